@@ -13,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-/// Points in a box of petal shape, spread by a fixed rule.
+/// Returns points in a box of petal shape, spread by a fixed rule.
 fn points(n: usize) -> Vec<DVec3> {
     (0..n)
         .map(|i| {
@@ -78,11 +78,11 @@ fn logistic_25_with_leave_one_out(bencher: Bencher<'_, '_>) {
 fn overlap_of_a_tulip(bencher: Bencher<'_, '_>) {
     let spec = preset("tulip").expect("a preset");
     let law = burgeon::bloom::GrowthLaw::logistic("tulip", 5.0, 1.0);
-    let plant = spec.at(2.0, &law, burgeon::Seed::new(1));
+    let plant = spec.make_on_day(2.0, &law, burgeon::Seed::new(1));
     bencher.bench_local(|| burgeon::bloom::part_overlap(black_box(&plant), None));
 }
 
-/// A blade of 10 rows of 7 marks: parameters, knots and controls of the bicubic surface through all of them.
+/// Times a blade of 10 rows of 7 marks: parameters, knots and controls of the bicubic surface through all of them.
 #[divan::bench]
 fn surface_through_10_by_7(bencher: Bencher<'_, '_>) {
     let marks: Vec<DVec3> = (0..70)

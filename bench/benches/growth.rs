@@ -1,7 +1,7 @@
 //! Trees: space colonisation to the end, self-organisation, a whole oak. `cargo bench --bench growth`
 //!
-//! The balls of attraction points that other programs were timed on (root (0, 0, 3), step 0.1, influence 2.0, kill
-//! 0.3) come from files where there are any, and are scattered anew where there are none.
+//! The balls of attraction points with which other programs were timed (root (0, 0, 3), step 0.1, influence 2.0, kill
+//! 0.3) come from files if there are any, and are scattered anew otherwise.
 
 #![expect(
     clippy::unwrap_used,
@@ -27,7 +27,7 @@ fn main() {
     divan::main();
 }
 
-/// Time on the processor where the system tells (what else runs on the machine then hardly counts), else by the clock.
+/// Time on the processor where the system reports it (so that other programs hardly count), else by the clock.
 struct Watch(Instant);
 
 impl base::Clock for Watch {
@@ -38,8 +38,8 @@ impl base::Clock for Watch {
     }
 }
 
-/// The mean time of several runs, milliseconds, and what the last one made. Not the least: the system counts time on
-/// the processor in ticks.
+/// Returns the mean time of several runs, milliseconds, and the result of the last one. Not the least: the system
+/// counts time on the processor in ticks.
 fn mean<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     let watch = Watch(Instant::now());
     let started = watch.now_ms();
@@ -50,14 +50,14 @@ fn mean<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     ((watch.now_ms() - started) / runs.max(1) as f64, made)
 }
 
-/// The most memory that this process has had, MiB; 0 where the system does not tell.
+/// Returns the largest memory of this process so far, MiB; 0 where the system does not report it.
 fn peak_mib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
     line.and_then(|l| l.split_whitespace().next()?.parse::<u64>().ok()).unwrap_or(0) / 1024
 }
 
-/// The file of that many points, or as many scattered in the same ball.
+/// Reads the file of that many points, or scatters as many in the same ball.
 fn ball(n: usize) -> Vec<DVec3> {
     let path =
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../../shared/data/attractors/ball_{n}.xyz"));
@@ -83,7 +83,7 @@ fn grow(points: &[DVec3]) -> Colonized {
     colonize(&[root], points, &Obstacles::none(), &spec, &Run::plain(), &mut Report::default()).unwrap()
 }
 
-/// Time against number of points, and the exponent fitted to it. Other parameters shrink with the spacing.
+/// Prints time against number of points, and the exponent fitted to it. Other parameters shrink with the spacing.
 fn scaling() {
     println!(" points       ms   joints  rounds unreached  peak MiB");
     let mut logs = Vec::new();
@@ -103,14 +103,14 @@ fn scaling() {
     println!("time grows as points^{:.2}", over / under);
 }
 
-/// Self-organisation without end: most of what is generated is shed again.
+/// Self-organisation without end: most metamers are shed again.
 fn self_organizing(years: u32) -> SelfOrganized {
     let spec = SelfOrganizingSpec { years, ..SelfOrganizingSpec::default() };
     let none = Obstacles::none();
     self_organize(&[DVec3::ZERO], &none, &spec, Seed::new(1), &Run::plain(), &mut Report::default()).unwrap()
 }
 
-/// Target: 1.5 million metamers generated a second on one core.
+/// Measures metamers. Target: 1.5 million generated a second on one core.
 fn metamers() {
     println!("\nyears        ms  generated     shed     kept  generated/s");
     for years in [20, 40, 60] {
@@ -145,7 +145,7 @@ fn oak_stages() {
     println!();
 }
 
-/// Target: 30 ms from spec to meshes.
+/// Times an oak. Target: 30 ms from spec to meshes.
 #[divan::bench(args = [1, 2])]
 fn oak_to_meshes(threads: usize) -> usize {
     let one = Run::plain();
@@ -153,7 +153,7 @@ fn oak_to_meshes(threads: usize) -> usize {
     Oak::FULL.made(&run).1.triangle_count()
 }
 
-/// Targets: 4 ms and 60 ms.
+/// Times a ball of points. Targets: 4 ms and 60 ms.
 #[divan::bench(args = [3_000, 30_000])]
 fn ball_to_the_end(bencher: divan::Bencher<'_, '_>, n: usize) {
     let points = ball(n);

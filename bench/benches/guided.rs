@@ -1,5 +1,5 @@
-//! Growth that a hand guides: a round by living buds, whole crowns beside the baseline (the VR paper, Fig 19, whose own
-//! times are lost), and what a hand costs on a large plant. `cargo bench --bench guided`; one thread.
+//! Growth guided by hand: a round by living buds, whole crowns compared with the baseline (the VR paper, Fig 19, whose
+//! own times are lost), and the cost of edits on a large plant. `cargo bench --bench guided`; one thread.
 
 #![expect(
     clippy::unwrap_used,
@@ -30,7 +30,7 @@ fn ms<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (start.elapsed().as_secs_f64() * 1e3, made)
 }
 
-/// The least time of several runs.
+/// Returns the least time of several runs.
 fn least<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     let mut best = ms(&mut work);
     for _ in 1..runs {
@@ -42,7 +42,7 @@ fn least<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     best
 }
 
-/// The most memory that this process has had, MiB; 0 where the system does not tell.
+/// Returns the largest memory of this process so far, MiB; 0 where the system does not report it.
 fn peak_mib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
@@ -51,15 +51,15 @@ fn peak_mib() -> u64 {
 
 const ROOT: [DVec3; 1] = [DVec3::ZERO];
 
-/// 1,300 markers a bud are more than the usual budget allows.
+/// 1,300 markers for each bud exceed the default budget.
 fn run() -> Run<'static> {
     Run { budget: Budget { times: 1000.0, ..Budget::default() }, ..Run::plain() }
 }
 
-/// One round of a tree in a ball, by how many buds may grow in it.
+/// Times one round of a tree in a ball, by the number of buds that may grow in it.
 fn rounds() {
     println!("markers    buds   joints  ms a round   us a bud");
-    // The last one has internodes a quarter as long, and so many buds.
+    // The last one has internodes a quarter as long, and correspondingly more buds.
     for (markers, finer) in [(12, 1.0), (60, 1.0), (1300, 1.0), (60, 4.0)] {
         let ball = Envelope::Sphere { centre: DVec3::Y * 5.0, radius_m: 5.0 };
         let plain = GuidedSpec::of_crown(ball);
@@ -76,7 +76,7 @@ fn rounds() {
                 continue;
             }
             let joints = growing.skeleton().len();
-            // The least of several tries of the same round, each grown from the ground: a copy has no room to grow into.
+            // The least of several runs of the same round, each grown from the ground: a copy has no room to grow into.
             let grown = || {
                 let mut one = plant();
                 while one.rounds() < growing.rounds() {
@@ -93,7 +93,7 @@ fn rounds() {
     }
 }
 
-/// A crown in a ball by guided growth and by space colonisation of buds, at one number of rounds.
+/// Times a crown in a ball by guided growth and by space colonisation of buds, at one number of rounds.
 fn crowns() {
     println!("\nmethod              markers  rounds   joints        ms  peak MiB");
     let ball = Envelope::Sphere { centre: DVec3::Y * 5.0, radius_m: 5.0 };
@@ -120,7 +120,7 @@ fn crowns() {
     }
 }
 
-/// A plant of so many nodes on one limb: shoots of 20 nodes along a limb, which a trunk bears.
+/// Makes a plant of `nodes` nodes: shoots of 20 nodes along a limb, which a trunk bears.
 fn limb(nodes: usize) -> Plant {
     let mut p = Plant::default();
     let line = |from: DVec3, along: DVec3, n: u32| -> Vec<DVec3> {
@@ -164,8 +164,10 @@ fn hands() {
         println!("  {name:8} {:8.3}", ms / 200.0);
     }
     let (tree, _, _) = Oak::FULL.made(&Run::plain());
-    let from =
-        GrowFrom::Branch { axis: burgeon::shape::AxisKey::of(&tree.plant, AxisId::new(0)).unwrap(), at: 0.6 };
+    let from = GrowFrom::Branch {
+        axis: burgeon::shape::AxisKey::for_axis(&tree.plant, AxisId::new(0)).unwrap(),
+        at: 0.6,
+    };
     let grow = |rounds| HandEdit::Grow {
         from: from.clone(),
         towards: Some(DVec3::X),

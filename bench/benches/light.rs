@@ -1,4 +1,4 @@
-//! Light on the oak that comes with Burgeon: from meshes in memory to what each organ absorbs, on one thread.
+//! Light on the oak that comes with Burgeon: from meshes in memory to the light that each organ absorbs, on one thread.
 
 use burgeon::light::{Beams, SkyKind};
 use burgeon::{
@@ -10,7 +10,7 @@ fn main() {
     divan::main();
 }
 
-/// By how often light is followed from surface to surface.
+/// By the number of times that light is followed from surface to surface.
 #[divan::bench(args = [0, 3], sample_count = 3, sample_size = 1)]
 fn oak(bencher: Bencher<'_, '_>, bounces: u32) {
     let spec = Preset::find("oak").expect("a preset").spec().expect("a spec");

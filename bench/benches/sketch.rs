@@ -23,7 +23,7 @@ fn make(drawing: &Drawing) -> Made {
     make_from_sketch(drawing, &SketchOptions::default(), Seed::new(1), &run).unwrap()
 }
 
-/// The median run of 25 of each drawing, by stage.
+/// Prints the median run of 25 of each drawing, by stage.
 fn stage_shares() {
     println!("sketch     ms   preprocess classify structure depth  mesh   triangles");
     for name in TABLE1 {
@@ -53,7 +53,7 @@ fn table1_sketch(bencher: divan::Bencher<'_, '_>, name: &str) {
     bencher.bench(|| make(&drawing));
 }
 
-/// A pen draws one more stroke on a drawing that is there: from each of its points to meshes, on one thread as in a browser.
+/// One more stroke on an existing drawing: from each of its points to meshes, on one thread as in a browser.
 #[divan::bench(args = TABLE1)]
 fn under_the_pen(bencher: divan::Bencher<'_, '_>, name: &str) {
     let (drawing, options) = (table1(name), SketchOptions::default());
@@ -98,7 +98,7 @@ fn overlapping_ink<const STROKES: u32>(bencher: divan::Bencher<'_, '_>, pile: Pi
     bencher.bench(|| make(&drawing));
 }
 
-/// Branches one above the other, each with a hundred leaves above and below.
+/// Draws branches one above the other, each with a hundred leaves above and below.
 fn leafy(leaves: u32) -> Drawing {
     let rows = leaves.div_ceil(100);
     let mut lines = vec![vec![DVec2::ZERO, DVec2::new(0.0, f64::from(rows) * 4.0)]];

@@ -14,7 +14,7 @@ use burgeon::make_leaf_from_scan;
 use burgeon::mesh::PointCloud;
 use burgeon_bench::{Stopwatch, TwoThreads};
 
-/// A blade of 60 mm x 36 mm with a stalk of 40 mm: 93 of 100 points on the blade, 6 on the stalk, 1 anywhere.
+/// Makes a blade of 60 mm x 36 mm with a stalk of 40 mm: 93 of 100 points on the blade, 6 on the stalk, 1 anywhere.
 fn cloud(count: usize) -> Vec<DVec3> {
     let mut s = Seed::new(11).stream(Draw::Test);
     let mut out = Vec::with_capacity(count);

@@ -1,5 +1,5 @@
-//! One stroke more on a drawing of thousands, on one thread: what each stage takes, and whether it is the plant that
-//! would be made from scratch. `cargo run --release --package burgeon-bench --example many_strokes`
+//! One more stroke on a drawing of thousands, on one thread: the time of each stage, and whether the plant equals one
+//! made from scratch. `cargo run --release --package burgeon-bench --example many_strokes`
 
 #![expect(
     clippy::unwrap_used,
@@ -51,7 +51,7 @@ fn step(what: &str, evaluator: &mut Evaluator, drawing: &Drawing) -> ItemReport 
     item
 }
 
-/// A short line within the drawing.
+/// Makes a short line within the drawing.
 fn line(drawing: &Drawing, across: f64) -> Stroke {
     let places = || drawing.strokes.iter().flat_map(|s| &s.samples).map(|s| s.at);
     let (low, high) =
@@ -62,7 +62,7 @@ fn line(drawing: &Drawing, across: f64) -> Stroke {
     Stroke { samples: points.map(Into::into).collect(), ..Stroke::default() }
 }
 
-/// Blades, lines and rings of many sizes, side by side: as in the benchmark of the Studio.
+/// Draws blades, lines and rings of many sizes, next to one another: as in the benchmark of the Studio.
 fn grid(count: u32) -> Drawing {
     let mut seed = 1_u64;
     let mut random = || {
@@ -86,7 +86,7 @@ fn grid(count: u32) -> Drawing {
     Drawing::from_polylines("many", &lines)
 }
 
-/// A drawing beside itself until there are close to 5,000 strokes.
+/// Repeats a drawing next to itself until there are close to 5,000 strokes.
 fn again(drawing: &Drawing) -> Drawing {
     let mut out = Drawing { name: "again".into(), ..Drawing::default() };
     let mut k = 0;

@@ -1,5 +1,5 @@
-//! Drawings of many strokes that lie on one another, on one thread: what each stage takes, and how it grows.
-//! `cargo run --release --package burgeon-bench --example overlapping_ink [DRAWING ...] [STROKES ...]`
+//! Drawings of many strokes that lie on one another, on one thread: the time of each stage, and its growth. `cargo run
+//! --release --package burgeon-bench --example overlapping_ink [DRAWING ...] [STROKES ...]`
 
 #![expect(
     clippy::unwrap_used,

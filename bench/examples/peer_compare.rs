@@ -1,5 +1,5 @@
-//! Distances between two clouds both ways, timed for `bench/peers_bloom.py`: prints a line of JSON. Arguments: two files
-//! of points as little-endian doubles x y z.
+//! Distances between two clouds both ways, timed for `bench/peers_bloom.py`: prints a line of JSON. Arguments: two
+//! files of points as little-endian doubles x y z.
 
 #![expect(clippy::print_stdout, reason = "its output is what it is for")]
 #![expect(clippy::expect_used, reason = "a benchmark without its input is worth nothing")]

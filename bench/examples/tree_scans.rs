@@ -1,7 +1,8 @@
-//! Our own trees, scanned by a virtual scanner and found again: volume, height, diameter, orders, surface, against the
-//! truth and against a cone by allometry.
+//! Our own trees, scanned by a virtual scanner and found again: volume, height, diameter, orders, surface, compared
+//! with the truth and with a cone by allometry.
 //!
-//! `cargo run --release -p burgeon-bench --example tree_scans -- [--leaves] [--positions N] [--save FOLDER] [PRESET SEED]...`
+//! `cargo run --release -p burgeon-bench --example tree_scans -- [--leaves] [--positions N] [--save FOLDER] [PRESET
+//! SEED]...`
 
 #![expect(clippy::print_stdout, reason = "this is a program for the terminal")]
 
@@ -25,7 +26,7 @@ impl Executor for Threads {
     }
 }
 
-/// A slope with bumps, so large that a scan sees its edge nowhere near the tree.
+/// Makes a slope with bumps, large enough that the scan does not see its edge near the tree.
 fn terrain(size: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     let n = 60_u32;
@@ -89,7 +90,7 @@ fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
 struct Row {
     truth: [f64; 3],
     found: [f64; 3],
-    /// Between which values the figures are said to lie.
+    /// Reported intervals of the figures.
     said: [Interval; 3],
 }
 
@@ -105,7 +106,7 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
     let points = scanned(&plant, positions, seed);
     if let Some(folder) = save {
         let name = format!("{preset}-{seed}{}", if leaves { "-leaves" } else { "" });
-        let cloud = PointCloud { points: points.clone(), colors: vec![], offset_m: None };
+        let cloud = PointCloud { points: points.clone(), ..PointCloud::default() };
         let file = std::fs::File::create(folder.join(format!("{name}.ply"))).expect("a file");
         write_cloud_ply(&cloud, &ExportSpec::default(), std::io::BufWriter::new(file)).expect("written");
         let file = std::fs::File::create(folder.join(format!("{name}-truth.csv"))).expect("a file");

@@ -1,4 +1,4 @@
-//! What the benchmarks share: the drawings of Table 1, very large ones, an oak, and two threads.
+//! Shared parts of the benchmarks: the drawings of Table 1, very large ones, an oak, and two threads.
 
 mod piles;
 
@@ -19,7 +19,7 @@ pub use piles::Pile;
 /// The eight drawings of the paper's Table 1.
 pub const TABLE1: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
 
-/// A drawing of Table 1, read into memory.
+/// Reads a drawing of Table 1 into memory.
 ///
 /// # Panics
 /// When the fixture cannot be read: a benchmark without its input is worth nothing.
@@ -52,7 +52,7 @@ impl Oak {
     pub const SMALL: Self =
         Self { lifespan: 1, points: 2500, leaf_spacing_m: 0.06, leaf_keep: 0.06, detail: 0.2 };
 
-    /// Grows it and gives it its surface; the report has the times of the stages `grow`, `wood`, `leaves`, `mesh`.
+    /// Grows the oak and makes its surface; the report has the times of the stages `grow`, `wood`, `leaves`, `mesh`.
     ///
     /// # Panics
     /// When it cannot be grown: a benchmark without its input is worth nothing.
@@ -81,7 +81,7 @@ impl Oak {
 pub struct Stopwatch(std::time::Instant);
 
 impl Stopwatch {
-    /// Starts now.
+    /// Starts a stopwatch.
     pub fn start() -> Self {
         Self(std::time::Instant::now())
     }
@@ -93,7 +93,7 @@ impl Clock for Stopwatch {
     }
 }
 
-/// Two threads, as the machine of the paper had two cores: the first that asks and one more, as in the command line.
+/// Two threads, as the machine of the paper had two cores: the calling one and one more, as in the command line.
 #[derive(Clone, Copy, Debug)]
 pub struct TwoThreads;
 

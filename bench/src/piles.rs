@@ -4,26 +4,26 @@ use base::ops;
 use burgeon::glam::DVec2;
 use burgeon::ink::Drawing;
 
-/// A family of drawings; all have the same number of points a stroke, whatever the number of strokes.
+/// A family of drawings; all have the same number of points in each stroke, whatever the number of strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pile {
     /// The same stroke, again and again.
     Equal,
-    /// The same stroke, each time about a pixel beside itself.
+    /// The same stroke, each time shifted by about a pixel.
     Jittered,
-    /// Straight lines from anywhere to anywhere.
+    /// Straight lines between random points.
     Crossing,
-    /// Short lines side by side.
+    /// Short parallel lines.
     Hatching,
-    /// Circles of all sizes anywhere, most of which cut others.
+    /// Circles of all sizes at random places, most of which cut others.
     Circles,
 }
 
 impl Pile {
-    /// All of them.
+    /// All families.
     pub const ALL: [Self; 5] = [Self::Equal, Self::Jittered, Self::Crossing, Self::Hatching, Self::Circles];
 
-    /// Its name in tables.
+    /// Returns its name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Equal => "equal",
@@ -34,7 +34,7 @@ impl Pile {
         }
     }
 
-    /// A drawing of so many strokes on a sheet of 1,000 pixels; hatching needs a larger one.
+    /// Makes a drawing of `strokes` strokes on a sheet of 1,000 pixels; hatching needs a larger one.
     pub fn drawing(self, strokes: u32) -> Drawing {
         let mut seed = 1_u64;
         let mut random = || {

@@ -10,7 +10,7 @@ libfuzzer_sys::fuzz_target!(|head: &[u8]| {
     let hosts = ["127.0.0.1:7734", "localhost:7734"].map(String::from).to_vec();
     let cookie = "burgeon-7734".into();
     let own = Addresses { scheme: "http", hosts: hosts.clone(), takes: 0, cookie };
-    // The bytes as they are, and as the rest of a request that is right so far.
+    // The bytes unchanged, and as the rest of a request whose beginning is valid.
     let begun = [b"GET /index.html HTTP/1.1\r\nHost: 127.0.0.1:7734\r\n", head].concat();
     let target = [b"GET /", head, b" HTTP/1.1\r\nHost: 127.0.0.1:7734"].concat();
     for head in [head, &begun, &target] {

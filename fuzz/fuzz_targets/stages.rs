@@ -1,4 +1,4 @@
-//! `targets::TARGETS` names its function, which says what it does.
+//! The function of this target is in `targets::TARGETS`, with its description.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

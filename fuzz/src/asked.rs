@@ -1,4 +1,5 @@
-//! Any text as a description: what is read and within its ranges makes something sound, or is refused with a reason.
+//! Any text as a description: text that is read and within its ranges gives a sound result, or is refused with a
+//! reason.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,10 +24,10 @@ use burgeon::{
 
 use super::{refused, split_first_line};
 
-/// A hundredth of the usual limits: what fits is made in some tenths of a second.
+/// A hundredth of the default limits: what fits is made in some tenths of a second.
 const SMALL: Budget = Budget { times: 0.01, raise: None };
 
-/// Most bytes of one file that a model of `links` names: what a mutant says is never much.
+/// Most bytes of one file that a model of `links` names: a mutant never contains much.
 const MOST_COMPANION_BYTES: usize = 1 << 20;
 
 fn small() -> Run<'static> {
@@ -42,7 +43,7 @@ pub(super) fn assert_model(model: &Model) {
     assert_eq!(bad, None, "a sound model");
 }
 
-/// A spec of the kind that the first line names: `tree`, `flower`, `leaf`, `sketch` or `skin`.
+/// Reads a spec of the kind that the first line names: `tree`, `flower`, `leaf`, `sketch` or `skin`.
 pub fn specs(bytes: &[u8]) -> bool {
     let (kind, rest) = split_first_line(bytes);
     let Ok(text) = core::str::from_utf8(rest) else { return false };
@@ -91,7 +92,7 @@ pub fn specs(bytes: &[u8]) -> bool {
     }
 }
 
-/// A spec, if it is one and within its ranges; then it is the same after it was written.
+/// Reads a spec, if it is valid and within its ranges; checks that it is the same after it was written.
 fn read<T: Spec + PartialEq + std::fmt::Debug>(text: &str) -> Option<T> {
     let read: T = match spec::from_toml(text) {
         Ok(read) => read,
@@ -109,7 +110,7 @@ fn read<T: Spec + PartialEq + std::fmt::Debug>(text: &str) -> Option<T> {
     Some(read)
 }
 
-/// Files that a tree's spec names are asked for by their names, and the spec is refused without them.
+/// Checks that files that a tree's spec names are requested by their names, and that the spec is refused without them.
 fn grow(text: &str) -> bool {
     let asked = RefCell::new(Vec::new());
     let open = |name: &str| -> Option<NamedMesh> {
@@ -145,7 +146,7 @@ fn plain_sketch() -> SketchOptions {
     SketchOptions { skin: SkinSpec { textures: false, ..SkinSpec::default() }, ..SketchOptions::default() }
 }
 
-/// A stem with two leaves and a crown above it, in pixels.
+/// Draws a stem with two leaves and a crown above it, in pixels.
 fn drawing() -> &'static Drawing {
     static DRAWING: OnceLock<Drawing> = OnceLock::new();
     DRAWING.get_or_init(|| {
@@ -176,7 +177,7 @@ fn draw(options: &SketchOptions) -> bool {
     }
 }
 
-/// A file of materials: worn by a flower, and only pictures that it names are asked for.
+/// Reads a file of materials: a flower wears it, and only pictures that it names are requested.
 pub fn materials(bytes: &[u8]) -> bool {
     static FLOWER: OnceLock<Plant> = OnceLock::new();
     let Ok(text) = core::str::from_utf8(bytes) else { return false };
@@ -192,7 +193,7 @@ pub fn materials(bytes: &[u8]) -> bool {
     assert!(asked.borrow().iter().all(|name| named.contains(&name.as_str())), "asks for what is not named");
     let flower = FLOWER.get_or_init(|| {
         let lily = burgeon::bloom::preset("lily").expect("a species that comes with the program");
-        lily.at(lily.opening_days, &lily.own_law(), Seed::new(1))
+        lily.make_on_day(lily.opening_days, &lily.own_law(), Seed::new(1))
     });
     // Textures this small are enough to paint every pattern.
     let spec = SkinSpec { worn: worn.always(true), textures: false, texture_size: 64, ..SkinSpec::default() };
@@ -205,7 +206,7 @@ pub fn materials(bytes: &[u8]) -> bool {
         }
         Err(e) => return refused(&e),
     }
-    // A document knows its pictures: what names another is refused there.
+    // A document knows its pictures: it refuses materials that name others.
     for material in wear.materials() {
         let unknown = material.pattern == Pattern::Picture || material.picture.is_some();
         let mut workspace = workspace::Workspace::default();
@@ -214,14 +215,15 @@ pub fn materials(bytes: &[u8]) -> bool {
         workspace.act(&add).expect("a species that comes with the program");
         let id = workspace.current().expect("the plant that was added");
         let put = burgeon::document::PlantCommand::Wear(burgeon::skin::Wearer::Petal, Some(material.clone()));
-        let done = workspace.run(put.of(id));
+        let done = workspace.run(put.for_plant(id));
         assert!(!unknown || done.is_err(), "a picture that the document has not");
         assert_eq!(workspace.document().validate().next(), None, "a sound document");
     }
     true
 }
 
-/// A picture: as many pixels as it says, the same after it was written; its header is believed within bounds only.
+/// Reads a picture: it has the stated number of pixels, and is the same after it was written; its header is trusted
+/// only within bounds.
 pub fn pictures(bytes: &[u8]) -> bool {
     let read = read_picture(bytes);
     if let Some(picture) = &read {
@@ -249,9 +251,10 @@ pub fn pictures(bytes: &[u8]) -> bool {
     read.is_some()
 }
 
-/// A model with the files that it names: the name of the model, the model, and each file after a line `=== NAME`.
+/// Reads a model with the files that it names: the name of the model, the model, and each file after a line `=== NAME`.
 ///
-/// What is not given is not there. A model without what its shape needs is an error that names it, any other a warning.
+/// A file that is not given does not exist. If the shape of a model needs it, the error names it; otherwise a warning
+/// does.
 pub fn links(bytes: &[u8]) -> bool {
     let (name, rest) = split_first_line(bytes);
     let Some(format) = name.rsplit_once('.').and_then(|(_, end)| ModelFormat::from_extension(end)) else {
@@ -289,7 +292,7 @@ pub fn links(bytes: &[u8]) -> bool {
         Ok(read) => {
             assert_model(&read);
             write_glb(&read, std::io::sink()).expect("writes what it read");
-            // An OBJ is whole without its materials, and says what it lacks.
+            // An OBJ is whole without its materials, and warns of missing ones.
             let told = !report.warnings.is_empty() || format != ModelFormat::Obj;
             assert!(missing.borrow().is_empty() || told, "nothing is said of {:?}", missing.borrow());
             true
@@ -307,7 +310,7 @@ pub fn links(bytes: &[u8]) -> bool {
     taken
 }
 
-/// Whether a model may hold pictures itself.
+/// Whether a model may contain pictures itself.
 fn is_within(model: &[u8]) -> bool {
     let holds = |word: &[u8]| model.windows(word.len()).any(|w| w == word);
     holds(b"data:") || holds(b"bufferView")

@@ -1,4 +1,5 @@
-//! What comes after the readers: drawings cleaned, read, built and measured; edits; copies; growth laws; scans of several days.
+//! Steps after the readers: drawings cleaned, read, built and measured; edits; copies; growth laws; scans of several
+//! days.
 
 use std::sync::OnceLock;
 
@@ -20,13 +21,13 @@ use burgeon::{
 use super::asked::{assert_model, assert_plant};
 use super::refused;
 
-/// How much of an input is looked at: a mutant of a few thousand bytes never asks for minutes.
+/// Limits of the part of an input that is used: a mutant of a few thousand bytes never takes minutes.
 struct Bounds {
     /// Strokes of a drawing.
     strokes: usize,
     /// Points of all strokes.
     points: usize,
-    /// Strokes up to which a drawing is also made stroke by stroke, which must come to the same.
+    /// Most strokes of a drawing that is also made stroke by stroke, which must give the same.
     grown_strokes: usize,
     /// Edits of a file.
     edits: usize,
@@ -42,7 +43,7 @@ struct Bounds {
     organ_points: usize,
 }
 
-/// For mutants; the large drawings of the test `kept` have their own way in.
+/// Limits for mutants; the large drawings of the test `kept` have a separate entry.
 const BOUNDS: Bounds = Bounds {
     strokes: 1_000,
     points: 30_000,
@@ -55,10 +56,11 @@ const BOUNDS: Bounds = Bounds {
     organ_points: 200,
 };
 
-/// A drawing: one stroke a line, as `x y x y ...`, with `branch-contour`, `leaf-contour` or `#rrggbb` if it has one.
+/// Makes a drawing: one stroke in each line, as `x y x y ...`, with `branch-contour`, `leaf-contour` or `#rrggbb` if it
+/// has one.
 ///
-/// Cleaned, classified, read, built and measured. Each step is sound whatever the one before it was; a drawing that grew
-/// stroke by stroke is the same plant as one that was there at once.
+/// Cleaned, classified, read, built and measured. Each step is sound whatever the one before it was; a drawing that
+/// grew stroke by stroke gives the same plant as the whole at once.
 pub fn reading(bytes: &[u8]) -> bool {
     let drawing = drawn(&String::from_utf8_lossy(bytes));
     let run = Run { budget: Budget { times: 0.1, ..Budget::default() }, ..Run::plain() };
@@ -105,7 +107,7 @@ pub fn reading(bytes: &[u8]) -> bool {
     true
 }
 
-/// The drawing that a text of `reading` is.
+/// Parses the drawing of a text of `reading`.
 fn drawn(text: &str) -> Drawing {
     let mut drawing = Drawing { name: "fuzz".into(), ..Drawing::default() };
     let mut points_left = BOUNDS.points;
@@ -132,7 +134,7 @@ fn drawn(text: &str) -> Drawing {
     drawing
 }
 
-/// A small tree with leaves, made once.
+/// Returns a small tree with leaves, made once.
 pub(super) fn tree() -> &'static Plant {
     static TREE: OnceLock<Plant> = OnceLock::new();
     TREE.get_or_init(|| {
@@ -144,7 +146,7 @@ pub(super) fn tree() -> &'static Plant {
 /// The spec of [`tree`].
 pub(super) const BUSH: &str = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n[leaves]\nspacing_m = 0.3\n";
 
-/// A file of edits on a small tree: each done, or not with a reason, and the plant is sound.
+/// Applies a file of edits to a small tree: each is done, or refused with a reason, and the plant is sound.
 pub fn edits(bytes: &[u8]) -> bool {
     let Ok(file) = serde_json::from_slice::<EditsFile>(bytes) else { return false };
     let edits = &file.edits[..file.edits.len().min(BOUNDS.edits)];
@@ -173,7 +175,8 @@ fn outcome_words(outcome: &Outcome) -> String {
     if outcome.is_done() { "it was done".into() } else { outcome.to_string() }
 }
 
-/// Copies of copies: each three bytes are a branch, what it is set on, and where. The pieces stay within the budget.
+/// Makes copies of copies: each three bytes are a branch, its destination, and the place on it. The pieces stay within
+/// the budget.
 pub fn copies(bytes: &[u8]) -> bool {
     let branch = |byte: u8| {
         let path = [0, u32::from(byte >> 4), u32::from(byte & 15)];
@@ -220,12 +223,12 @@ pub fn copies(bytes: &[u8]) -> bool {
     }
 }
 
-/// Nodes, leaves and flowers.
+/// Counts nodes, leaves and flowers.
 fn pieces(plant: &Plant) -> u64 {
     (plant.nodes.position.len() + plant.organs.len() + plant.flowers.len()) as u64
 }
 
-/// A growth law or a growth table: laws are fitted, and a flower that follows one is sound on every day.
+/// Reads a growth law or a growth table: laws are fitted, and a flower that follows one is sound on every day.
 pub fn law_after(bytes: &[u8]) -> bool {
     let law = match serde_json::from_slice::<GrowthLaw>(bytes) {
         Ok(law) => law,
@@ -242,12 +245,12 @@ pub fn law_after(bytes: &[u8]) -> bool {
     assert!(checks.iter().all(|c| !c.name.is_empty()), "checks have names");
     let lily = bloom::preset("lily").expect("a species that comes with the program");
     for day in [-1.0, 0.0, 0.5 * law.span_days, law.span_days, 1e3] {
-        assert_plant(&lily.at(day, &law, Seed::new(1)));
+        assert_plant(&lily.make_on_day(day, &law, Seed::new(1)));
     }
     true
 }
 
-/// The laws of a growth table; none for what is none.
+/// Fits the laws of a growth table; `None` if it is not one.
 fn fitted(bytes: &[u8]) -> Option<GrowthLaw> {
     let mut rows = read_growth(bytes, &GrowthSpec::default()).ok()?.rows;
     rows.truncate(BOUNDS.rows);
@@ -273,7 +276,7 @@ fn fitted(bytes: &[u8]) -> Option<GrowthLaw> {
     }
 }
 
-/// Scans of several days, a point a line: `day,organ,x,y,z` in metres. Settled, fitted, and in motion.
+/// Reads scans of several days, a point in each line: `day,organ,x,y,z` in metres. Settled, fitted, and in motion.
 pub fn stages(bytes: &[u8]) -> bool {
     let stages = scanned(&String::from_utf8_lossy(bytes));
     let run = Run::plain();
@@ -300,10 +303,10 @@ pub fn stages(bytes: &[u8]) -> bool {
         Ok(motion) => motion,
         Err(e) => return is_refused(&e),
     };
-    let count = motion.at(0.0, &run).expect("nobody cancels").len();
+    let count = motion.points_on_day(0.0, &run).expect("nobody cancels").len();
     let span = stages.last().map_or(1.0, |s| s.day) - stages.first().map_or(0.0, |s| s.day);
     for day in [0.0, 0.5 * span, span] {
-        let points = motion.at(day, &run).expect("nobody cancels");
+        let points = motion.points_on_day(day, &run).expect("nobody cancels");
         assert_eq!(points.len(), count, "the same points on every day");
         let colors = motion.colors(day);
         assert!(colors.iter().all(Vec::is_empty), "scans without colours");
@@ -316,7 +319,7 @@ fn is_refused(e: &BloomError) -> bool {
     refused(e)
 }
 
-/// The stages that a text of `stages` is: days that increase, finite points of metres.
+/// Parses the stages of a text of `stages`: increasing days, finite points in metres.
 fn scanned(text: &str) -> Vec<Stage> {
     let mut stages: Vec<Stage> = Vec::new();
     for line in text.lines() {
@@ -360,13 +363,13 @@ fn scanned(text: &str) -> Vec<Stage> {
     stages
 }
 
-/// An organ whose base is its first point.
+/// Makes an organ whose base is its first point.
 fn organ(name: &str, base: DVec3) -> ScanOrgan {
     let (rows, points, colors, way) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     ScanOrgan { name: name.into(), rows, points, colors, way, base, tip: base, ..ScanOrgan::default() }
 }
 
-/// A plant is meshed soundly, or refused.
+/// Checks that a plant is meshed soundly, or refused.
 fn assert_meshes(plant: &Plant, run: &Run<'_>) {
     let spec = SkinSpec { textures: false, detail: 0.3, ..SkinSpec::default() };
     match burgeon::skin::skin(plant, &spec, run) {

@@ -1,4 +1,4 @@
-//! Any bytes as a file of one format: what is read is sound and can be written, or there is an error that says something.
+//! Any bytes as a file of one format: the result is sound and can be written, or there is an error with a message.
 
 use burgeon::Report;
 use burgeon::bloom::{self, GrowthLaw, Quantity};
@@ -34,7 +34,7 @@ fn read_any_drawings(bytes: &[u8], format: DrawingFormat) -> bool {
     for read in read_drawings(bytes, format, "fuzz") {
         match read {
             Ok(read) => {
-                let info = DrawingSummary::of(&read.drawing, &read.warnings);
+                let info = DrawingSummary::from_drawing(&read.drawing, &read.warnings);
                 assert!(info.strokes > 0, "a drawing without strokes is an error");
                 write_drawing(&read.drawing, std::io::sink()).expect("writes what it read");
                 any = true;
@@ -62,7 +62,7 @@ pub fn stl(bytes: &[u8]) -> bool {
 }
 
 fn read_any_model(bytes: &[u8], format: ModelFormat) -> bool {
-    // Whatever a model refers to is the same bytes again.
+    // Every file that a model refers to consists of the same bytes.
     let resolve = |_: SideFile<'_>| Ok(bytes.to_vec());
     match read_model(bytes, format, "fuzz", &ExportSpec::default(), &resolve, &mut Report::default()) {
         Ok(model) => {
@@ -75,7 +75,7 @@ fn read_any_model(bytes: &[u8], format: ModelFormat) -> bool {
     }
 }
 
-/// A scan of the format that the first byte names.
+/// Reads a scan of the format that the first byte names.
 pub fn cloud(bytes: &[u8]) -> bool {
     let Some((first, rest)) = bytes.split_first() else { return false };
     read_any_cloud(rest, CloudFormat::ALL[usize::from(*first) % CloudFormat::ALL.len()])
@@ -96,7 +96,7 @@ fn read_any_cloud(bytes: &[u8], format: CloudFormat) -> bool {
     }
 }
 
-/// The structure of plants in each of its formats: what is read is sound and can be measured.
+/// Reads the structure of plants in each of its formats: the result is sound and can be measured.
 pub fn structure(bytes: &[u8]) -> bool {
     let mut any = false;
     for format in StructureFormat::ALL {
@@ -116,7 +116,7 @@ pub fn structure(bytes: &[u8]) -> bool {
     any
 }
 
-/// A workbook of a spreadsheet, and the growth table in it.
+/// Reads a workbook of a spreadsheet, and the growth table in it.
 pub fn sheet(bytes: &[u8]) -> bool {
     match read_xlsx(bytes, None) {
         Ok(read) => {
@@ -129,7 +129,7 @@ pub fn sheet(bytes: &[u8]) -> bool {
     }
 }
 
-/// Marks or chief veins of a leaf, and a growth table.
+/// Reads marks or chief veins of a leaf, and a growth table.
 pub fn marks(bytes: &[u8]) -> bool {
     let any = match read_growth(bytes, &GrowthSpec::default()) {
         Ok(read) => {
@@ -148,7 +148,7 @@ pub fn marks(bytes: &[u8]) -> bool {
     any || leaf
 }
 
-/// A vein graph: marks or chief veins that make a leaf.
+/// Reads a vein graph: marks or chief veins that make a leaf.
 pub fn vein_graph(bytes: &[u8]) -> bool {
     let mut report = Report::default();
     let Ok(read) = read_vein_graph(bytes) else { return false };
@@ -161,7 +161,7 @@ pub fn vein_graph(bytes: &[u8]) -> bool {
     true
 }
 
-/// A project: a sound document that survives being saved.
+/// Reads a project: a sound document that survives being saved.
 pub fn project(bytes: &[u8]) -> bool {
     match document::read_project(bytes) {
         Ok(document) => {
@@ -175,7 +175,7 @@ pub fn project(bytes: &[u8]) -> bool {
     }
 }
 
-/// A growth law: what passes its checks has finite values and a finite pace, and is plotted.
+/// Reads a growth law: one that passes its checks has finite values and a finite pace, and is plotted.
 pub fn law(bytes: &[u8]) -> bool {
     let Ok(law) = serde_json::from_slice::<GrowthLaw>(bytes) else { return false };
     if law.validate().next().is_some() {

@@ -1,4 +1,4 @@
-//! A document in use: whatever is asked of it, it is sound, refused requests change nothing, and steps can be taken back.
+//! A document in use: it is sound after any request, refused requests change nothing, and steps can be undone.
 
 use burgeon::document::{Command, Document, read_project, write_project};
 use burgeon::{Budget, Run, VERSION};
@@ -7,10 +7,10 @@ use workspace::{Action, FileKind, GestureRecord, NewMaker, Workspace, WorkspaceE
 use super::made::BUSH;
 use super::{refused, split_first_line};
 
-/// Commands and steps that are looked at: a mutant never asks for minutes.
+/// Most commands and steps that are run: a mutant never takes minutes.
 const MOST_STEPS: usize = 60;
 
-/// A fraction of the usual limits: what fits is made in some tenths of a second.
+/// A fraction of the default limits: what fits is made in some tenths of a second.
 const SMALL: Budget = Budget { times: 0.005, raise: None };
 
 fn small() -> Run<'static> {
@@ -21,15 +21,16 @@ fn assert_sound(workspace: &Workspace) {
     assert_eq!(workspace.document().validate().next(), None, "a sound document");
 }
 
-/// A document that was saved and opened is saved as the same bytes: nothing but the numbers of its plants is lost.
+/// Checks that a document that was saved and opened is saved as the same bytes: only the numbers of its plants are
+/// lost.
 fn assert_saved(workspace: &Workspace) {
     let file = workspace.save().expect("a sound document is saved");
     let again = write_project(&read_project(&file).expect("reads what it wrote"), VERSION);
     assert!(again.expect("a sound document is saved") == file, "saved, opened and saved: another file");
 }
 
-/// Any file, after a line with its name, opened as the Studio opens it: a sound document that is made and can be taken
-/// back, or an error after which everything is as it was.
+/// Opens any file, after a line with its name, as the Studio opens it: the result is a sound document that is made and
+/// can be undone, or an error after which everything is unchanged.
 pub fn opened(bytes: &[u8]) -> bool {
     let (name, file) = split_first_line(bytes);
     let mut workspace = Workspace::default();
@@ -64,7 +65,7 @@ pub fn opened(bytes: &[u8]) -> bool {
     true
 }
 
-/// A document with a plant of each maker, numbered as they were added: a drawing, a tree, a leaf, a flower.
+/// Makes a document with a plant of each maker, numbered as they were added: a drawing, a tree, a leaf, a flower.
 fn planted() -> Workspace {
     let mut workspace = Workspace::default();
     let drawing = br#"{"burgeon":"drawing/1","strokes":[{"points":[[50,0],[50,40],[52,90]]},{"points":[[52,90],[70,110],[52,130],[34,110],[52,90]]},{"points":[[50,40],[80,60]]}]}"#;
@@ -76,7 +77,7 @@ fn planted() -> Workspace {
     workspace
 }
 
-/// Commands, one a line as JSON; `undo` and `redo` are lines too. All of them can be taken back, and done again.
+/// Runs commands, one in each line as JSON, and lines `undo` and `redo`. All of them can be undone and redone.
 pub fn commands(bytes: &[u8]) -> bool {
     let (mut workspace, mut any) = (planted(), false);
     for line in bytes.split(|&b| b == b'\n').take(MOST_STEPS) {
@@ -109,14 +110,15 @@ pub fn commands(bytes: &[u8]) -> bool {
     any
 }
 
-/// Whether a request was done; one that was refused changes nothing.
+/// Whether a request was done; checks that a refused one changed nothing.
 fn is_done(done: Result<(), WorkspaceError>, workspace: &Workspace, before: &Document) -> bool {
     let Err(e) = done else { return true };
     assert!(workspace.document() == before, "what is refused changes nothing");
     refused(&e)
 }
 
-/// A record of hands, on a document with a plant of each maker: replayed to its end or up to the step that is refused.
+/// Replays a record of gestures, on a document with a plant of each maker: to its end or up to the step that is
+/// refused.
 pub fn records(bytes: &[u8]) -> bool {
     let mut record = match GestureRecord::read(bytes) {
         Ok(record) => record,

@@ -1,4 +1,4 @@
-//! A cloud -> how many blades it shows: one leaf, or several that each sit on a neck of their own.
+//! Counts the blades in a cloud: one leaf, or several that each sit on a neck of their own.
 
 use base::{Cancelled, Run, Seed};
 use glam::DVec3;
@@ -7,22 +7,25 @@ use crate::clean::{CleanSpec, clean};
 use crate::segment::{ScanOrgan, SegmentSpec, organs};
 use crate::thin::thin;
 
-/// Points that are looked at: a leaf of a hundredth of the plant still has some hundreds of them.
+/// Points that are examined: a leaf of a hundredth of the plant still has some hundreds of them.
 const SAMPLE: usize = 20_000;
-/// Bands of an organ from base to tip, at least and at most, and points that a band needs in the mean to show its width.
+/// Least and greatest number of bands of an organ from base to tip.
 const BANDS: [usize; 2] = [6, 24];
+/// Mean number of points that a band needs to show its width.
 const A_BAND: usize = 20;
-/// A neck is at most this share of the blade's width. Lobes begin as wide as they are; leaflets and seed leaves do not. Where one
-/// has parted on such a neck, what is left of the others' necks is at most the second share.
+/// Widest neck as a share of the blade's width: lobes begin at full width, leaflets and seed leaves do not. The second
+/// share is the limit for the other necks once a blade has parted on such a neck.
 const NECK: [f64; 2] = [0.4, 0.7];
-/// A blade is at least this share of the width of the widest, and of the points.
+/// Least width of a blade as a share of the width of the widest.
 const AS_WIDE: f64 = 0.35;
+/// Least number of points of a blade as a share of all points.
 const POINTS: f64 = 0.08;
 
-/// How many blades a cloud shows, each on a neck of its own: leaves of a plant, leaflets, leaves that touch. Lobes of one blade
-/// are one blade; a cloud that does not part, or is too small to tell, counts as one.
+/// Counts the blades in a cloud, each on a neck of its own: leaves of a plant, leaflets, leaves that touch. Lobes of
+/// one blade are one blade; a cloud that does not part, or is too small to decide, counts as one.
 ///
-/// Any way may be up: the ways run from the ends of the cloud along each axis, and most of them must agree that it parts.
+/// Any axis may point up: paths start from the ends of the cloud along each axis, and most of them must agree that it
+/// parts.
 /// Cost: n log n.
 ///
 /// # Errors
@@ -42,31 +45,31 @@ pub fn blades(points: &[DVec3], run: &Run<'_>) -> Result<usize, Cancelled> {
     Ok(counts.get(counts.len() / 2).copied().unwrap_or(1))
 }
 
-/// Blades as the ways from one place show them.
+/// Counts the blades along the paths from one place.
 fn from(points: &[DVec3], foot: DVec3, run: &Run<'_>) -> Result<usize, Cancelled> {
     let spec = SegmentSpec { foot: Some(foot), ..SegmentSpec::default() };
     let found = organs(points, &spec, run);
     run.cancel.check()?;
     let Some(found) = found.ok().filter(|found| found.len() > 1) else { return Ok(1) };
-    let forms: Vec<Form> = found.iter().map(|o| Form::of(o, points.len())).collect();
+    let forms: Vec<Form> = found.iter().map(|o| Form::measure(o, points.len())).collect();
     let widest = forms.iter().map(|f| f.width).fold(0.0, f64::max);
     let is_blade = |f: &&Form| f.neck <= NECK[1] && f.width >= AS_WIDE * widest && f.share >= POINTS;
     let found: Vec<&Form> = forms.iter().filter(is_blade).collect();
     Ok(if found.iter().any(|f| f.neck <= NECK[0]) { found.len() } else { 1 })
 }
 
-/// How wide an organ is.
+/// Widths of an organ.
 struct Form {
-    /// Usual greatest width.
+    /// Typical greatest width.
     width: f64,
-    /// Width where it parts from the others, as a share of that.
+    /// Width of the neck, as a share of that.
     neck: f64,
-    /// Its points as a share of all.
+    /// Share of all points.
     share: f64,
 }
 
 impl Form {
-    fn of(organ: &ScanOrgan, all: usize) -> Self {
+    fn measure(organ: &ScanOrgan, all: usize) -> Self {
         let widths: Vec<f64> = organ
             .regions((organ.points.len() / A_BAND).clamp(BANDS[0], BANDS[1]))
             .iter()
@@ -84,7 +87,7 @@ impl Form {
         };
         let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
         let quarter = widths.len().div_ceil(4);
-        // What the ways start from may be a leaf, too: it parts from the others at its end.
+        // The paths may start from a leaf, too: it parts from the others at its end.
         let neck = match organ.name == "stem" {
             true => least(&widths[widths.len() - quarter..]),
             false => least(&widths[..quarter]),
@@ -98,7 +101,7 @@ mod tests {
     use super::*;
     use base::{Draw, ops};
 
-    /// A leaf of 60 mm on a stalk of 30 mm, turned about +Y; `lobes` cut it to `depth` of its width.
+    /// Makes a leaf of 60 mm on a stalk of 30 mm, turned about +Y; `lobes` cut it to `depth` of its width.
     fn leaf(turn: f64, depth: f64, count: usize, seed: u64) -> Vec<DVec3> {
         let mut s = Seed::new(seed).stream(Draw::Test);
         let (sin, cos) = ops::sin_cos(turn);
@@ -143,7 +146,7 @@ mod tests {
                 plant.extend(leaf(ops::TAU * k as f64 / leaves as f64, 0.0, 4000, k as u64));
             }
             assert_eq!(seen(&plant), leaves);
-            // Any way up.
+            // With any axis up.
             let lying: Vec<DVec3> = plant.iter().map(|p| DVec3::new(p.y, p.z, p.x)).collect();
             assert!(seen(&lying) > 1, "{leaves}");
             let few: Vec<DVec3> = plant.iter().copied().step_by(4).collect();

@@ -1,4 +1,4 @@
-//! Stamens, pistil, disc, fruit and what bears them, at one day.
+//! Stamens, pistil, disc, fruit and their bearers on one day.
 
 use base::{Draw, ops};
 use glam::DVec3;
@@ -19,7 +19,7 @@ fn mix(a: [f32; 3], b: [f32; 3], t: f64) -> [f32; 3] {
 const PAPPUS: u32 = 40;
 
 impl FlowerSpec {
-    /// Stamens, pistil, disc and fruit, within all that the nest holds.
+    /// Adds stamens, pistil, disc and fruit, within the nest.
     pub(crate) fn centre(&self, bed: &mut Bed<'_>, times: &Times<'_>, nest: &Nest, rings: &[Whorl]) {
         // On top of the receptacle.
         let base = rings.iter().map(|w| w.insertion.height_m).fold(0.0, f64::max);
@@ -48,7 +48,7 @@ impl FlowerSpec {
         }
     }
 
-    /// Distance of the feet of stamens from the axis: clear of the pistil, within the petals.
+    /// Returns the distance of the feet of stamens from the axis: clear of the pistil, within the petals.
     fn stamen_foot(&self) -> f64 {
         let ovary = if self.fruit.below { 0.0 } else { 0.5 * self.fruit.width_m * self.fruit.ovary };
         let pistil = if self.pistil_m > 0.0 { 2.0 * self.pistil_radius() } else { 0.0 };
@@ -66,20 +66,20 @@ impl FlowerSpec {
         if self.pistil_radius_m > 0.0 { self.pistil_radius_m } else { own }
     }
 
-    /// Radius of what is free within the feet of the petals.
+    /// Returns the radius of the free space within the feet of the petals.
     fn petal_room(&self) -> f64 {
         let inner = self.whorls.iter().map(|w| w.ring(w.rings.max(1) - 1).insertion.radius_m);
         inner.fold(f64::INFINITY, f64::min).min(0.1)
     }
 
-    /// A filament that bends outwards, and an anther at its end.
+    /// Adds a filament that bends outwards, and an anther at its end.
     fn stamen(&self, bed: &mut Bed<'_>, k: u32, (times, base): (&Times<'_>, f64), nest: &Nest) {
         let seed = bed.seed.child(u64::from(k));
         let Stamens { count, length_m: length, spread_deg: spread, .. } = self.stamens;
         let (g, wilt) = (times.open, ops::smoothstep(0.0, 1.0, times.wilt));
         let many = count > 12;
         let ring = (f64::from(k) + 0.5) / f64::from(count.max(1));
-        // They go one after another.
+        // They fall one after another.
         let gone = self.stamens.shed * (2.0 * times.life - 0.5 * seed.stream(Draw::Tint).uniform());
         let left = (1.0 - 2.5 * gone.clamp(0.0, 0.4)).max(1e-3);
         let lean = if many { ops::lerp(0.15, 1.0, ring.sqrt()) } else { 1.0 };
@@ -98,7 +98,7 @@ impl FlowerSpec {
         let mut direction = DVec3::Y;
         for i in 0..6 {
             let t = (f64::from(i) + 0.5) / 6.0;
-            // Steeper at its foot, leaning out towards its end; never out of what holds it.
+            // Steeper at its foot, leaning out towards its end; always within the nest.
             let held = (nest.limit(long * t) - rad(ops::lerp(0.0, 5.0, t))).max(rad(-8.0));
             let (sin, cos) = ops::sin_cos((tilt * (0.4 + 0.9 * t)).min(held));
             direction = out * sin + DVec3::Y * cos;
@@ -107,7 +107,7 @@ impl FlowerSpec {
         }
         let radii: Vec<f64> = (0..=6).map(|i| thick * left * (1.0 - 0.5 * f64::from(i) / 6.0)).collect();
         bed.strand(OrganKind::Stamen, &line, &radii, self.stamens.filament_color);
-        // No larger than there is room beside the next.
+        // No larger than the room next to its neighbour.
         let head = (at.x * at.x + at.z * at.z).sqrt().max(foot);
         let room = if many {
             0.5 * head.max(0.5 * length * ops::sin(rad(spread) * ops::lerp(0.25, 1.0, g)))
@@ -133,7 +133,7 @@ impl FlowerSpec {
         bed.strand(OrganKind::Anther, &line, &radii, color);
     }
 
-    /// How large the fruit is, as a share of the ripe one.
+    /// Returns the size of the fruit, as a share of the ripe one.
     fn fruit_size(&self, times: &Times<'_>) -> f64 {
         let young = self.fruit.ovary * ops::lerp(0.6, 1.0, times.open);
         ops::lerp(young, 1.0, ops::smoothstep(0.3, 1.0, times.life.max(0.0)))
@@ -143,14 +143,14 @@ impl FlowerSpec {
         mix(self.fruit.color, self.fruit.ripe_color, ops::smoothstep(0.45, 1.0, times.life.max(0.0)))
     }
 
-    /// Radius of the fruit at a share of its length.
+    /// Returns the radius of the fruit at a share of its length.
     fn fruit_radius(&self, t: f64) -> f64 {
         let w = self.fruit.widest.clamp(0.2, 0.8);
         let x = if t < w { 1.0 - t / w } else { (t - w) / (1.0 - w) };
         0.5 * self.fruit.width_m * (1.0 - 0.93 * x * x).max(0.0).sqrt()
     }
 
-    /// A fruit inside of the petals, on the axis.
+    /// Adds a fruit inside of the petals, on the axis.
     fn superior(&self, bed: &mut Bed<'_>, base: f64, times: &Times<'_>) {
         let size = self.fruit_size(times);
         let color = self.fruit_color(times);
@@ -162,7 +162,7 @@ impl FlowerSpec {
             })
             .collect();
         if self.fruit.cap > 0.0 {
-            // A cap of stigmas on top, as a poppy's.
+            // A cap of stigmas on top, as in a poppy.
             let wide = 0.5 * self.fruit.width_m * size * self.fruit.cap;
             let top = base + long;
             let last = rings.len() - 1;
@@ -196,12 +196,14 @@ impl FlowerSpec {
         bed.around(OrganKind::Fruit, DVec3::Y * base, grid);
     }
 
-    /// How far the receptacle of a flower reaches below its foot; `wide`: the radius of its widest ring, metres.
+    /// Returns how far the receptacle of a flower reaches below its foot; `wide`: the radius of its widest ring,
+    /// metres.
     pub fn receptacle_depth_m(wide: f64) -> f64 {
         0.6 * wide + 0.002
     }
 
-    /// What joins stalk and petals: from the stalk up along the feet of sepals and petals, and to the axis.
+    /// Adds the receptacle that joins stalk and petals: from the stalk up along the feet of sepals and petals, and to
+    /// the axis.
     pub(crate) fn receptacle(&self, bed: &mut Bed<'_>, times: &Times<'_>, whorls: &[Whorl]) {
         let wide = whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
         let below = self.fruit.below && self.fruit.length_m > 0.0;
@@ -210,7 +212,7 @@ impl FlowerSpec {
         if below {
             let size = self.fruit_size(times);
             low = -self.fruit.length_m * size;
-            // A hip or an inferior ovary hangs under what it bears.
+            // A hip or an inferior ovary hangs below the petals and sepals.
             let neck = whorls.iter().map(|w| w.insertion.height_m).fold(0.0, f64::min);
             rings = (0..7)
                 .map(|i| {
@@ -244,7 +246,7 @@ impl FlowerSpec {
         bed.around(OrganKind::Pedicel, DVec3::Y * low, bowl);
     }
 
-    /// Ovary, style and stigma; `bare`: without the ovary, which is the fruit.
+    /// Adds ovary, style and stigma; `bare`: without the ovary, which is the fruit.
     fn pistil(&self, bed: &mut Bed<'_>, long: f64, base: f64, (bare, wilt): (bool, f64)) {
         let thick = self.pistil_radius();
         let [foot, ovary] = if bare { [0.8, 0.8] } else { [1.6, 2.0] };
@@ -265,7 +267,8 @@ impl FlowerSpec {
         bed.strand(OrganKind::Pistil, &line, &radii, color);
     }
 
-    /// A dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim inwards.
+    /// Adds a dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim
+    /// inwards.
     fn florets(&self, bed: &mut Bed<'_>, radius: f64, base: f64, [g, wilt]: [f64; 2]) {
         let look = &self.disc;
         let height = |share: f64| base + look.dome * radius * (1.0 - share);
@@ -279,7 +282,7 @@ impl FlowerSpec {
             let r = f64::from(i) / 6.0;
             let y = if i == 6 { base - 0.002 * radius } else { height(r * r) };
             let r = radius * if i == 6 { 0.9 } else { r };
-            // Round the other way: a sheet's upper side has its columns from right to left.
+            // In reverse: a sheet's upper side has its columns from right to left.
             for k in (0..=24).rev() {
                 let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 24.0);
                 floor.points.push(DVec3::new(r * c, y, r * s));
@@ -293,7 +296,7 @@ impl FlowerSpec {
             let r = 0.97 * radius * share.sqrt();
             let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
             let foot = DVec3::new(r * c, height(share), r * s);
-            // Blooming: the ring between the rim and where the opening has come.
+            // In bloom: the ring between the rim and the front of the opening.
             let front = 1.0 - 0.75 * g * g;
             let bloom = ops::smoothstep(front, front + 0.15, share) * (1.0 - wilt);
             let long = radius * (0.08 + 0.05 * bloom);
@@ -306,12 +309,12 @@ impl FlowerSpec {
         }
     }
 
-    /// One fruit and its parachute: closed until the fruit ripens.
+    /// Adds one fruit and its parachute, which is closed until the fruit ripens.
     fn achene(&self, bed: &mut Bed<'_>, k: u32, base: f64, times: &Times<'_>) {
         let Achenes { count, length_m, head_m, color } = self.achenes;
         let n = f64::from(count.max(1));
         let grow = ops::smoothstep(0.5, 0.97, times.ripe).max(1e-3);
-        // Evenly over the sphere but for its foot, where the stalk is.
+        // Evenly over the sphere except for its foot, where the stalk is.
         let y = 1.0 - 1.55 * (f64::from(k) + 0.5) / n;
         let wide = (1.0 - y * y).max(0.0).sqrt();
         let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
@@ -325,7 +328,7 @@ impl FlowerSpec {
         let radii = [1.0, 4.0, 4.0, 1.0, 0.8, 0.7].map(|r| r * thin);
         bed.strand(OrganKind::Fruit, &line, &radii, color);
         let sphere = head + reach;
-        // As wide as there is room beside the next.
+        // As wide as the room next to its neighbour.
         let rim = 0.49 * sphere * (ops::TAU * 1.55 / n).sqrt() * grow;
         let (right, up) = out.any_orthonormal_pair();
         let mut grid = Grid {
@@ -353,7 +356,7 @@ impl FlowerSpec {
     }
 }
 
-/// Radius of the innermost ring.
+/// Returns the radius of the innermost ring.
 fn inner_radius(rings: &[Whorl]) -> f64 {
     rings.iter().map(|w| w.insertion.radius_m).fold(f64::INFINITY, f64::min)
 }

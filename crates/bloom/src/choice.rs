@@ -1,4 +1,4 @@
-//! Series of one kind -> the law that predicts them best, or straight lines.
+//! Chooses the law that predicts series of one kind best, or straight lines.
 
 use base::{CancelToken, Cancelled};
 
@@ -6,13 +6,14 @@ use crate::left_out::{Sittings, left_out_of_mean};
 use crate::tails::tail_of_f;
 use crate::{Form, Series, SharedFit, fit_shared};
 
-/// The law that predicts series best, and what it was chosen against.
+/// The law that predicts series best, with its comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     /// The best law, or the straight lines.
     pub fit: SharedFit,
-    /// The days determine it: it predicts what was left out better than straight lines and than the mean of the others, each by
-    /// more than one standard error of that difference; it fits better than straight lines do by more than chance; its rate is two standard errors from 0, and it has a degree of freedom and is on no bound.
+    /// Whether the days determine the law: it predicts left-out values better than straight lines and than the mean of
+    /// the others, each by more than one standard error of that difference; it fits better than straight lines by more
+    /// than chance; its rate is two standard errors from 0; it has a degree of freedom and is on no bound.
     pub determined: bool,
     /// Leave-one-out error of straight lines.
     pub straight_rmse: Option<f64>,
@@ -20,8 +21,8 @@ pub struct Choice {
 
 /// Chooses by leave-one-out among the three laws, with and without a level, and straight lines.
 ///
-/// `organs` has one entry a series: series of one organ have the same. All values of an organ on one day are left out together,
-/// as what shifts one of them shifts the others. `None` without a series of 2 days that differ.
+/// `organs` has one entry per series: series of one organ have the same. All values of an organ on one day are left out
+/// together, since what shifts one of them shifts the others. `None` without a series of 2 distinct days.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -35,7 +36,7 @@ pub fn choose(all: &[Series], organs: &[usize], cancel: &CancelToken) -> Result<
     for (&form, level) in Form::LAWS.iter().flat_map(|form| [(form, false), (form, true)]) {
         fits.extend(fit_shared(form, level, all, cancel)?);
     }
-    // A rate that is not two standard errors from 0 tells no curve from a line.
+    // A rate within two standard errors of 0 does not distinguish a curve from a line.
     fits.retain(|f: &SharedFit| {
         let sure = f.errors.as_ref().is_some_and(|e| f.r > 2.0 * e.rate);
         f.freedom > 0 && !f.on_bound && sure && bends([(straight.sse, straight.freedom), (f.sse, f.freedom)])
@@ -53,11 +54,12 @@ pub fn choose(all: &[Series], organs: &[usize], cancel: &CancelToken) -> Result<
     }))
 }
 
-/// Chance makes a curve that has more numbers fit as much better than a straight line less often than this.
+/// Significance level at which a curve with more parameters fits better than a straight line.
 pub(crate) const BENDS: f64 = 0.05;
 
-/// A curve fits better than straight lines do by more than chance: extra sum of squares (Bates and Watts 1988), for a curve that
-/// has more numbers than they have. Each fit as its sum of squares and its degrees of freedom, the lines first.
+/// Whether a curve fits better than straight lines by more than chance: extra sum of squares (Bates and Watts 1988),
+/// for a curve with more parameters. Each fit is given by its sum of squares and its degrees of freedom, the lines
+/// first.
 pub(crate) fn bends([(straight, straight_freedom), (curve, freedom)]: [(f64, i64); 2]) -> bool {
     let extra = (straight_freedom - freedom) as f64;
     if extra < 0.5 {

@@ -1,4 +1,4 @@
-//! A raw scan -> the plant alone: stray points and the ground plane are taken out.
+//! Removes stray points and the ground plane from a raw scan.
 
 use base::{Cancelled, Draw, Run, Seed};
 use geom::Voxels;
@@ -7,16 +7,16 @@ use glam::DVec3;
 use crate::thin::thin;
 use geom::extent;
 
-/// What is taken out of a scan.
+/// Settings of the cleaning of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CleanSpec {
-    /// Take stray points and specks out. Default true.
+    /// Whether to remove stray points and specks. Default true.
     pub outliers: bool,
-    /// Take a ground plane (table, soil, turntable) out if there is one. Default true.
+    /// Whether to remove a ground plane (table, soil, turntable) if there is one. Default true.
     pub plane: bool,
-    /// Upward direction of the scan; the ground is what lies across it, at the bottom. Default +Y.
+    /// Upward direction of the scan; the ground is perpendicular to it, at the bottom. Default +Y.
     pub up: DVec3,
-    /// Keep only points of this box, corner to corner. Default everything.
+    /// Box of points to keep, corner to corner. Default everything.
     pub crop: Option<[DVec3; 2]>,
     /// Least share of the points in a plane for it to be ground, 0 to 1. Default 0.1.
     pub plane_share: f64,
@@ -28,7 +28,7 @@ impl Default for CleanSpec {
     }
 }
 
-/// What was kept, and how much went for which reason.
+/// Points that were kept, and the numbers of removed points by reason.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cleaned {
     /// Rows of the points that were kept, in order.
@@ -39,18 +39,18 @@ pub struct Cleaned {
     pub ground: usize,
     /// Stray points and specks.
     pub outliers: usize,
-    /// Points of things that stand apart from the largest: people, other plants.
+    /// Points of objects apart from the largest: people, other plants.
     pub others: usize,
-    /// No ground lies across `up`, but a plane like one lies across this axis, the plant on its side of it: the scan
-    /// may lie down.
+    /// Axis to which a ground-like plane is perpendicular, with the plant on its side of it, if none is perpendicular
+    /// to `up`: the scan may lie down.
     pub ground_across: Option<DVec3>,
 }
 
-/// Takes stray points and the ground out of a scan.
+/// Removes stray points and the ground from a scan.
 ///
-/// A point is stray if the cubes around its own hold less than a tenth of what is usual, or if its connected
-/// piece holds less than 1 point in 200. A plane is ground if it lies across `up` (within 25 degrees), holds
-/// `plane_share` of the points and 97 of 100 of the others lie above it. Guaranteed: at least one point is
+/// A point is stray if the cubes around its own contain less than a tenth of the usual number, or if its connected
+/// piece contains less than 1 point in 200. A plane is ground if it is perpendicular to `up` (within 25 degrees),
+/// contains `plane_share` of the points and 97 of 100 of the others lie above it. Guaranteed: at least one point is
 /// kept of a cloud with a finite point inside the crop box. Cost: n log n; 5 million points take a few seconds.
 ///
 /// # Errors
@@ -96,16 +96,18 @@ pub fn clean(points: &[DVec3], spec: &CleanSpec, seed: Seed, run: &Run<'_>) -> R
     Ok(out)
 }
 
-/// A gap of this share of the size of a cloud parts two things; leaves of one plant, and scraps of a torn leaf, are nearer.
+/// Gap between two objects, as a share of the size of the cloud; leaves of one plant, and scraps of a torn leaf, are
+/// nearer.
 const APART: f64 = 0.12;
-/// What has a smaller share of the points is no thing, but strays.
+/// Share of the points below which a piece is not an object but stray points.
 const A_THING: f64 = 0.05;
 
-/// Rows of the largest of several things that stand apart in a cloud; `None` where it is one thing, strays aside.
+/// Returns the rows of the largest of several separate objects in a cloud; `None` if there is only one, stray points
+/// aside.
 pub fn largest_thing(points: &[DVec3]) -> Option<Vec<usize>> {
     let mut rows: Vec<usize> = (0..points.len()).filter(|&i| points[i].is_finite()).collect();
     let mut found = false;
-    // What is far away makes the cubes large: each round sees the rest more finely.
+    // Far points make the cubes large: each round resolves the rest more finely.
     for _ in 0..6 {
         let here: Vec<DVec3> = rows.iter().map(|&i| points[i]).collect();
         let size = extent(&here);
@@ -152,13 +154,13 @@ pub fn largest_thing(points: &[DVec3]) -> Option<Vec<usize>> {
     found.then_some(rows)
 }
 
-/// Least share of the points that lie above a table, and least height of what lies there, of the size of the cloud.
+/// Least share of the points above a table, and least height of the objects on it relative to the size of the cloud.
 const ON_TABLE: f64 = 0.05;
 
-/// Rows of what stands on a table or turntable in a cloud, whichever way is up; `None` where there is none.
+/// Returns the rows of the objects on a table or turntable in a cloud, whichever axis is up; `None` if there is none.
 ///
-/// A table is a filled plane of a quarter of the points with everything else on one side of it, and that is no line: a flat
-/// blade with its stalk is none.
+/// A table is a filled plane of a quarter of the points with everything else on one side of it, unless that rest is a
+/// line: a flat blade with its stalk is not a table.
 pub fn on_table(points: &[DVec3], seed: Seed) -> Option<Vec<usize>> {
     let axes = [DVec3::Y, DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z, DVec3::NEG_X];
     let finite: Vec<usize> = (0..points.len()).filter(|&i| points[i].is_finite()).collect();
@@ -180,7 +182,7 @@ pub fn on_table(points: &[DVec3], seed: Seed) -> Option<Vec<usize>> {
     })
 }
 
-/// Normal (upwards), level and half width of a ground plane.
+/// Returns the normal (upwards), level and half width of a ground plane.
 fn ground(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<(DVec3, f64, f64)> {
     let few: Vec<DVec3> = thin(points, 3000).into_iter().map(|i| points[i as usize]).collect();
     if few.len() < 50 {
@@ -205,7 +207,7 @@ fn ground(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<(DVec3, f64,
         }
     }
     let (_, n, level) = best?;
-    // Least squares through what lies near it.
+    // Least squares through the points near it.
     let near: Vec<DVec3> = few.iter().copied().filter(|p| (n.dot(*p) - level).abs() <= width).collect();
     let (centre, [_, _, refined], _) = geom::pca3(&near)?;
     let refined = if refined.dot(up) < 0.0 { -refined } else { refined };
@@ -220,7 +222,8 @@ fn ground(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<(DVec3, f64,
     is_ground.then_some((n, level, width))
 }
 
-/// The axis across which a ground lies, if it is not `up`: a quarter of the points, and a plant that stands out.
+/// Returns the axis to which a ground is perpendicular, if it is not `up`: a quarter of the points, and a plant that
+/// stands out.
 fn lying(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<DVec3> {
     let few: Vec<DVec3> = thin(points, 3000).into_iter().map(|i| points[i as usize]).collect();
     let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
@@ -235,7 +238,7 @@ fn lying(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<DVec3> {
     })
 }
 
-/// A table is as wide as what stands on it, on all sides; the flat part of a blade is not.
+/// Whether a table is as wide as the objects on it, on all sides, which the flat part of a blade is not.
 fn reaches_over(points: &[DVec3], normal: DVec3, level: f64, width: f64) -> bool {
     let (u, v) = normal.any_orthonormal_pair();
     let limits = |on: bool, axis: DVec3| {
@@ -249,7 +252,7 @@ fn reaches_over(points: &[DVec3], normal: DVec3, level: f64, width: f64) -> bool
     })
 }
 
-/// A ground fills its box, as a table or a turntable does and leaves do not: 60 of 100 cells of 10 x 10.
+/// Whether a plane fills its box, as a table or a turntable does and leaves do not: 60 of 100 cells of 10 x 10.
 fn filled(points: &[DVec3], normal: DVec3, level: f64, width: f64) -> bool {
     let (u, v) = normal.any_orthonormal_pair();
     let near = points.iter().filter(|p| (normal.dot(**p) - level).abs() <= width);
@@ -266,7 +269,7 @@ fn filled(points: &[DVec3], normal: DVec3, level: f64, width: f64) -> bool {
     seen.iter().filter(|s| **s).count() >= 60
 }
 
-/// Which points lie in company.
+/// Returns for each point whether its surroundings are dense enough.
 fn dense(points: &[DVec3]) -> Vec<bool> {
     let v = Voxels::new(points, 4.0);
     let mut company = vec![0_usize; v.len()];
@@ -303,7 +306,7 @@ fn dense(points: &[DVec3]) -> Vec<bool> {
             v.rows(c).iter().for_each(|&i| good[i as usize] = true);
         }
     }
-    // A cloud of specks only is what there is.
+    // A cloud of specks only is kept as it is.
     if good.iter().any(|g| *g) { good } else { vec![true; points.len()] }
 }
 
@@ -312,7 +315,7 @@ mod tests {
     use super::*;
     use base::ops;
 
-    /// A stem of 10 cm on a table of 30 x 30 cm, with stray points far above.
+    /// Makes a stem of 10 cm on a table of 30 x 30 cm, with stray points far above.
     fn scene() -> (Vec<DVec3>, usize, usize) {
         let mut s = Seed::new(3).stream(Draw::Test);
         let mut p = Vec::new();
@@ -372,7 +375,7 @@ mod tests {
     #[test]
     fn a_scene_that_lies_down_is_told() {
         let (p, _, _) = scene();
-        // As a scanner with +Z up writes it.
+        // As written by a scanner with +Z up.
         let lying: Vec<DVec3> = p.iter().map(|p| DVec3::new(p.x, -p.z, p.y)).collect();
         let c = clean(&lying, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
         assert_eq!((c.ground, c.ground_across), (0, Some(DVec3::Z)));

@@ -1,4 +1,4 @@
-//! Where flowers sit: the stalk that nods, and the flowers of an umbel, a raceme or a spike.
+//! Positions of flowers: the nodding stalk, and the flowers of an umbel, a raceme or a spike.
 
 use base::{Seed, ops, turn};
 use glam::{DQuat, DVec3};
@@ -8,17 +8,17 @@ use crate::organs::Seat;
 use crate::parts::ClusterForm;
 use crate::wanted::{FlowerSpec, rad};
 
-/// Where a flower sits and how it is turned.
+/// Position and rotation of a flower.
 pub(crate) struct Place {
     pub centre: DVec3,
     pub turn: DQuat,
-    /// Where its own stalk leaves the axis.
+    /// Point at which its own stalk leaves the axis.
     foot: DVec3,
 }
 
-/// The line of the stalk at a day, and of the axis that goes on from it.
+/// The line of the stalk on a day, and of the axis that continues it.
 pub(crate) struct Stalk {
-    /// From the ground up.
+    /// From the ground upwards.
     pub line: Vec<DVec3>,
     /// The angle at its end, radians.
     nod: f64,
@@ -26,14 +26,14 @@ pub(crate) struct Stalk {
     pub radius: f64,
 }
 
-/// A line that begins along +y from `foot` at an angle and bends on to another, towards +z.
+/// Makes a line that begins along +y from `foot` at an angle and bends to another, towards +z.
 fn bent(foot: DVec3, long: f64, [from, to]: [f64; 2], steps: u32) -> Vec<DVec3> {
     let fine = 4 * steps;
     let mut line = vec![foot];
     let mut at = foot;
     for k in 0..fine {
         let t = (f64::from(k) + 0.5) / f64::from(fine);
-        // It stands straight at first.
+        // It is straight at first.
         let (s, c) = ops::sin_cos(ops::lerp(from, to, ops::smoothstep(0.4, 1.0, t)));
         at += DVec3::new(0.0, c, s) * (long / f64::from(fine));
         if (k + 1).is_multiple_of(4) {
@@ -52,24 +52,24 @@ fn along(line: &[DVec3], t: f64) -> DVec3 {
 }
 
 impl Stalk {
-    /// The place at a share of its length.
-    pub(crate) fn at(&self, t: f64) -> DVec3 {
+    /// Returns the point at a share of its length.
+    pub(crate) fn point_at(&self, t: f64) -> DVec3 {
         along(&self.line, t)
     }
 }
 
-/// Pieces of a stalk that stand straight at every day.
+/// Pieces of the part of a stalk that is straight on every day.
 const STILL: usize = 8;
 
 impl FlowerSpec {
-    /// Place of flower `f` in the order in which the flowers of a cluster open, 0 to 1.
+    /// Returns the rank of flower `f` in the order in which the flowers of a cluster open, 0 to 1.
     fn turn_of(&self, f: u32) -> f64 {
         let n = self.umbel.max(1);
         let rank = f64::from(f) / f64::from(n.max(2) - 1);
         if self.cluster.form == ClusterForm::Umbel { 1.0 - rank } else { rank }
     }
 
-    /// The day of flower `f` itself: flowers of a cluster open one after another.
+    /// Returns the own day of flower `f`: flowers of a cluster open one after another.
     pub(crate) fn own_day(&self, f: u32, day: f64) -> f64 {
         if self.umbel <= 1 {
             return day;
@@ -78,12 +78,12 @@ impl FlowerSpec {
         day * (1.0 + spread / whole) - spread * self.turn_of(f)
     }
 
-    /// Size of a flower as a share: of a bud that is younger than the first day.
+    /// Returns the size of a flower as a share: a bud younger than the first day is smaller.
     pub(crate) fn bud_size(&self, own_day: f64) -> f64 {
         (1.0 + 0.9 * own_day / self.opening_days.max(1e-6)).clamp(0.3, 1.0)
     }
 
-    /// Radius of the stalk.
+    /// Returns the radius of the stalk.
     pub(crate) fn stalk_radius(&self) -> f64 {
         if self.stalk_radius_m > 0.0 {
             return self.stalk_radius_m;
@@ -92,7 +92,7 @@ impl FlowerSpec {
         petals.max(0.28 * self.disc_m).min(0.006)
     }
 
-    /// The stalk at a day: it bends to where the flower nods.
+    /// Returns the stalk on a day, bent to the nodding flower.
     pub(crate) fn stalk_at(&self, day: f64) -> Stalk {
         let [opening, wilting] = [self.opening_days, self.wilting_days].map(|d| d.max(1e-6));
         let open = ops::smoothstep(0.0, 1.0, (day / opening).clamp(0.0, 1.0));
@@ -106,7 +106,7 @@ impl FlowerSpec {
         Stalk { line, nod, axis, radius: self.stalk_radius() }
     }
 
-    /// Where flower `f` sits, and how it is turned.
+    /// Returns the position and rotation of flower `f`.
     pub(crate) fn place(&self, f: u32, day: f64, stalk: &Stalk) -> Place {
         let n = self.umbel.max(1);
         let end = stalk.line.last().copied().unwrap_or_default();
@@ -124,19 +124,19 @@ impl FlowerSpec {
                 (at, spread * (1.0 - 0.35 * t), golden)
             }
         };
-        // To the front is towards +z, a quarter of a turn; two ranks remain.
+        // The front is towards +z, a quarter of a turn; two ranks remain.
         let ranks = ops::FRAC_PI_2 + rad(34.0) * if f.is_multiple_of(2) { 1.0 } else { -1.0 };
         let azimuth = ops::lerp(azimuth % ops::TAU, ranks, self.cluster.sided);
         let (s, c) = ops::sin_cos(azimuth);
         let direction = DVec3::new(ops::sin(tilt) * c, ops::cos(tilt), ops::sin(tilt) * s);
         let own = self.own_day(f, day);
         let long = self.pedicel() * self.bud_size(own);
-        // About the upright first, so that every flower has its back to the axis.
+        // First about the vertical, so that every flower has its back to the axis.
         let turn = turn::about(DVec3::Y, ops::FRAC_PI_2 - azimuth) * turn::about(DVec3::X, tilt);
         Place { centre: foot + direction * long, turn, foot }
     }
 
-    /// Length of the stalk of one flower of a cluster.
+    /// Returns the length of the stalk of one flower of a cluster.
     pub(crate) fn pedicel(&self) -> f64 {
         match (self.cluster.form, self.cluster.pedicel_m > 0.0) {
             (_, true) => self.cluster.pedicel_m,
@@ -145,8 +145,8 @@ impl FlowerSpec {
         }
     }
 
-    /// What stands still: the foot of the stalk, or all of it where nothing nods, and the axis of a cluster. Also what
-    /// bears each flower.
+    /// Adds the static parts: the foot of the stalk, or all of it if nothing nods, and the axis of a cluster. Returns
+    /// the bearer of each flower.
     pub(crate) fn stems(
         &self,
         plant: &mut Plant,
@@ -156,7 +156,7 @@ impl FlowerSpec {
     ) -> Vec<Option<NodeId>> {
         let slim = stalk.radius;
         let mut stem = |bearer, line: &[DVec3], radii: [f64; 2], key: Seed| {
-            let line: Vec<DVec3> = line.iter().map(|&p| seat.at(p)).collect();
+            let line: Vec<DVec3> = line.iter().map(|&p| seat.transform(p)).collect();
             let id = plant.add_axis(AxisKind::Stem, bearer, key.number(), &line, None);
             let first = plant.axis(id).nodes.start as usize;
             let last = (line.len() - 1).max(1) as f64;
@@ -186,16 +186,17 @@ impl FlowerSpec {
         (0..self.umbel).map(|f| below(f).or(bearer)).collect()
     }
 
-    /// The head of a single stalk nods from day to day.
+    /// Whether the head of a single stalk nods from day to day.
     fn moves(&self) -> bool {
         self.umbel <= 1 && self.nod_deg > 0.0
     }
 
-    /// What moves with flower `f`: the bending part of a single stalk, or its own stalk in a cluster; and its radius.
+    /// Returns the moving part of the stalk of flower `f`, and its radius: the bending part of a single stalk, or its
+    /// own stalk in a cluster.
     pub(crate) fn own_stalk(&self, f: u32, day: f64, stalk: &Stalk) -> Option<(Vec<DVec3>, f64)> {
         if self.umbel > 1 {
             let Place { centre, foot, .. } = self.place(f, day, stalk);
-            // Rising from the axis, and straight to the flower.
+            // Rising from the axis, then straight to the flower.
             let middle = foot.lerp(centre, 0.5) + DVec3::Y * (0.06 * foot.distance(centre));
             let bow = |t: f64| foot.lerp(middle, t).lerp(middle.lerp(centre, t), t);
             let line = (0..=6).map(|k| bow(f64::from(k) / 6.0)).collect();

@@ -1,4 +1,4 @@
-//! Points with colours, and what their colours are between two scans.
+//! Points with colours, and their colours between two scans.
 
 use base::{Cancelled, Run, map_until_cancelled};
 use geom::KdTree;
@@ -13,7 +13,7 @@ pub struct OrganPoints {
     pub name: String,
     /// Metres, +Y up.
     pub points: Vec<DVec3>,
-    /// sRGB bytes; empty or one a point.
+    /// sRGB bytes; empty or one per point.
     pub colors: Vec<[u8; 3]>,
 }
 
@@ -24,7 +24,7 @@ impl From<&ScanOrgan> for OrganPoints {
 }
 
 impl OrganPoints {
-    /// Takes the points of the same organ in another scan in. Colours stay if both have some.
+    /// Adds the points of the same organ in another scan. Colours are kept if both have some.
     pub(crate) fn add(&mut self, more: Self) {
         self.points.extend(more.points);
         self.colors.extend(more.colors);
@@ -34,7 +34,7 @@ impl OrganPoints {
     }
 }
 
-/// The colours of the points of another cloud that are nearest to some; none of a cloud without colours.
+/// Returns, for each point, the colour of the nearest point of another cloud; empty for a cloud without colours.
 pub(crate) fn nearest(
     points: &[DVec3],
     others: &[DVec3],
@@ -49,7 +49,8 @@ pub(crate) fn nearest(
     map_until_cancelled(run, points.len(), of)
 }
 
-/// A mean of the light of two colours of each point, the second with this share; of points that have one on one day alone, that.
+/// Mixes the light of two colours of each point, the second with this share; a point with a colour on one day only
+/// keeps it.
 pub(crate) fn mixed([first, last]: &[Vec<[u8; 3]>; 2], share: f64) -> Vec<[u8; 3]> {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 };
     if last.is_empty() || (share <= 0.0 && !first.is_empty()) {

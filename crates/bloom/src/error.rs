@@ -1,4 +1,4 @@
-//! Two shapes without shared vertices -> how far they are apart.
+//! Distances between two shapes without shared vertices.
 
 use base::{Run, map_indexed, map_until_cancelled};
 use geom::KdTree;
@@ -10,41 +10,41 @@ use crate::BloomError;
 /// Distances from the points of one shape to the nearest points of another, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distances {
-    /// As Huai, Yang and Cai (2019) define their error: the mean over x, y and z of the absolute difference. Up to root 3 below
-    /// the Euclidean mean.
+    /// The error as Huai, Yang and Cai (2019) define it: the mean over x, y and z of the absolute difference. Up to
+    /// root 3 below the Euclidean mean.
     pub paper: f64,
     /// Mean Euclidean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// Root mean square distance.
     pub rms: f64,
-    /// 95 of 100 points are nearer.
+    /// 95th percentile of the distances.
     pub p95: f64,
-    /// The greatest.
+    /// Greatest distance.
     pub max: f64,
-    /// Points measured.
+    /// Number of measured points.
     pub points: usize,
 }
 
-/// Distances both ways, and how much of the measured shape is met.
+/// Distances in both directions, and the share of the measured shape that is covered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ShapeError {
-    /// From each measured point to the reconstruction: what the paper states.
+    /// Distances from each measured point to the reconstruction: the error that the paper states.
     pub to_model: Distances,
-    /// From each reconstructed point to the measurement: parts of the model that are not there.
+    /// Distances from each reconstructed point to the measurement: these show parts of the model that do not exist.
     pub to_scan: Distances,
     /// Share of measured points nearer than [`ShapeError::TOLERANCE`] to the reconstruction, 0 to 1.
     pub coverage: f64,
 }
 
 impl ShapeError {
-    /// The distance within which a measured point counts as met: the 2 mm of Huai, Yang and Cai (2019).
+    /// Distance within which a measured point counts as covered: the 2 mm of Huai, Yang and Cai (2019).
     pub const TOLERANCE: f64 = 0.002;
 }
 
 /// Compares a measured with a reconstructed shape, point to nearest point.
 ///
-/// Points that are not finite are left out. The distances include the spacing of the points: a shape sampled
-/// anew is not at 0 from itself. Cost: n log n, wherever the two shapes lie.
+/// Points that are not finite are left out. The distances include the spacing of the points: a resampled shape is not
+/// at distance 0 from itself. Cost: n log n, wherever the two shapes lie.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] if a shape has no finite point, [`BloomError::Cancelled`].
@@ -76,7 +76,7 @@ fn one_way(
     run: &Run<'_>,
 ) -> Result<(Distances, f64), BloomError> {
     run.cancel.check()?;
-    // Neighbours one after the other find their way through the same part of the tree.
+    // Neighbours that follow one another traverse the same part of the tree.
     let order: Vec<usize> = places.order().collect();
     let pieces: Vec<&[usize]> = order.chunks(4096).collect();
     let rows = map_until_cancelled(run, pieces.len(), |k| {
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn shapes_far_apart_and_of_different_size_take_no_longer() {
-        // A look at ever larger boxes between them took minutes.
+        // A search in ever larger boxes between them took minutes.
         let mut s = base::Seed::new(2).stream(base::Draw::Test);
         let small: Vec<DVec3> =
             (0..60_000).map(|_| DVec3::new(s.uniform(), s.uniform(), s.uniform())).collect();

@@ -1,10 +1,10 @@
-//! What can go wrong here.
+//! Errors of this crate.
 
-/// Something about the input makes the result impossible.
+/// Reason why the input allows no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BloomError {
-    /// A lattice has too few or too many control points, or not those that were asked for.
+    /// A lattice has too few or too many control points, or other numbers than requested.
     #[error(
         "a lattice of {counts:?} control points does not fit; give 2 to 16 along each axis, such as 4x4x4"
     )]
@@ -15,11 +15,11 @@ pub enum BloomError {
     /// Two columns that belong together differ in length.
     #[error("{what}: {is} rows, {wanted} are wanted")]
     Length {
-        /// What it is.
+        /// Name of the column.
         what: &'static str,
-        /// Rows there.
+        /// Actual number of rows.
         is: usize,
-        /// Rows needed.
+        /// Number of rows needed.
         wanted: usize,
     },
     /// There are too few points to work with.
@@ -27,17 +27,17 @@ pub enum BloomError {
         "{what} has {is} usable points, at least {wanted} are needed; scan it more densely or leave it out"
     )]
     TooFew {
-        /// What it is.
+        /// Name of the cloud.
         what: String,
-        /// Points there.
+        /// Actual number of points.
         is: usize,
-        /// Points needed.
+        /// Number of points needed.
         wanted: usize,
     },
     /// A series cannot be fitted.
     #[error(transparent)]
     Fit(#[from] crate::FitError),
-    /// It would have been too much.
+    /// A limit of the budget was exceeded.
     #[error(transparent)]
     OverBudget(#[from] base::OverBudget),
     /// The user asked to stop.

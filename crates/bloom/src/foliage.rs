@@ -1,4 +1,4 @@
-//! Leaves on the stalk or at its foot, and the ground on which petals come to lie.
+//! Leaves on the stalk or at its foot, and the ground on which fallen petals lie.
 
 use base::{Draw, Seed, ops, turn};
 use glam::{DQuat, DVec3};
@@ -10,11 +10,12 @@ use crate::organs::{Grid, Seat};
 use crate::parts::Foliage;
 use crate::wanted::{FlowerSpec, rad};
 
-/// Half columns of a leaf, and rows.
+/// Columns on each half of a leaf.
 const HALF: u32 = 4;
+/// Rows of a leaf.
 const ROWS: u32 = 20;
 
-/// One leaf's way: where it leaves the stalk, its azimuth and its angles, radians.
+/// Course of one leaf: its start on the stalk, its azimuth and its angles, radians.
 #[derive(Clone, Copy)]
 struct Way {
     root: DVec3,
@@ -24,7 +25,7 @@ struct Way {
 }
 
 impl Way {
-    /// Along the midrib by even steps: place and angle to the upright.
+    /// Returns the points along the midrib at even steps, with their angles to the vertical.
     fn line(&self, long: f64, steps: u32, [from, to]: [f64; 2]) -> Vec<(DVec3, f64)> {
         let [a, b, c] = self.angles;
         let bent =
@@ -62,7 +63,7 @@ impl Foliage {
         smooth * (1.0 - self.lobe_depth * (1.0 - wave) * ops::smoothstep(0.0, 0.15, 1.0 - v))
     }
 
-    /// The blade along a midrib.
+    /// Makes the blade along a midrib.
     fn blade(&self, line: &[(DVec3, f64)], azimuth: f64, size: f64) -> Grid {
         let (s, c) = ops::sin_cos(azimuth);
         let (out, across) = (DVec3::new(c, 0.0, s), DVec3::new(-s, 0.0, c));
@@ -73,7 +74,7 @@ impl Foliage {
         for (i, &(at, angle)) in line.iter().enumerate() {
             let v = i as f64 / last;
             let (sin, cos) = ops::sin_cos(angle);
-            // The upper side looks to the stalk.
+            // The upper side faces the stalk.
             let (along, up) = (out * sin + DVec3::Y * cos, DVec3::Y * sin - out * cos);
             let half = 0.5 * self.width_m * size * self.outline(v);
             for &t in &grid.across {
@@ -90,7 +91,7 @@ impl Foliage {
     }
 }
 
-/// What bears leaves and where they belong.
+/// Bearer of leaves, with their flower.
 struct Bough<'a> {
     plant: &'a mut Plant,
     seat: Seat,
@@ -122,7 +123,7 @@ impl Bough<'_> {
         for p in &grid.points {
             self.reach = self.reach.max((p.x * p.x + p.z * p.z).sqrt());
         }
-        let points = grid.points.iter().map(|&p| self.seat.at(p)).collect();
+        let points = grid.points.iter().map(|&p| self.seat.transform(p)).collect();
         let Grid { across, along, colors, .. } = grid;
         let sheet = Sheet { points, across, along, colors, veins: Venation::default(), form: None };
         if let Some((sheet, frame)) = sheet.framed() {
@@ -131,7 +132,7 @@ impl Bough<'_> {
     }
 
     fn stalk(&mut self, line: &[(DVec3, f64)], radius: f64, rgb: [f32; 3]) {
-        let line: Vec<DVec3> = line.iter().map(|&(p, _)| self.seat.at(p)).collect();
+        let line: Vec<DVec3> = line.iter().map(|&(p, _)| self.seat.transform(p)).collect();
         let (Some(&root), Some(&end)) = (line.first(), line.last()) else { return };
         let frame = Frame::looking(root, end - root, DVec3::Z);
         let path: Vec<DVec3> = line.iter().map(|&p| frame.localise(p)).collect();
@@ -152,7 +153,7 @@ impl Bough<'_> {
         let radius = (0.016 * long).clamp(0.0004, 0.003);
         self.stalk(&stalk, radius, kind.color);
         let (end, angle) = stalk[stalk.len() - 1];
-        // A little beyond the end, so that the blade grows out of it.
+        // Slightly beyond the end, so that the blade grows out of it.
         let tip = Way { root: end + (end - stalk[stalk.len() - 2].0) * 0.02, ..way };
         self.sheet(kind.blade(&tip.line(long, ROWS, [share, 1.0]), way.azimuth, way.size));
         let pairs = (kind.leaflets - 1) / 2;
@@ -161,10 +162,10 @@ impl Bough<'_> {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 8")]
             let at = stalk[(t * 8.0) as usize].0;
             for side in [-1.0, 1.0] {
-                // Sideways and a little forwards, in the slope of the leaf.
+                // Sideways and slightly forwards, in the slope of the leaf.
                 let azimuth = way.azimuth + side * 1.15;
                 let (s, c) = ops::sin_cos(azimuth);
-                // On a stalk of its own, as wide as its foot.
+                // On a stalk of its own, as wide as the foot of the leaf.
                 let clear = (1.3 * radius).max(0.6 * kind.base * kind.width_m * way.size);
                 let root = at + DVec3::new(c, 0.0, s) * clear;
                 let flat = ops::lerp(ops::FRAC_PI_2, angle, 0.4);
@@ -177,7 +178,7 @@ impl Bough<'_> {
 }
 
 impl FlowerSpec {
-    /// The leaves, and how far they reach from the axis of the stalk.
+    /// Adds the leaves, and returns how far they reach from the axis of the stalk.
     pub(crate) fn foliage(
         &self,
         plant: &mut Plant,
@@ -199,7 +200,8 @@ impl FlowerSpec {
                 let inner = f64::from(kind.count - 1 - k);
                 let out = stalk.radius * 1.02 + 0.0003 + kind.gap_m * inner;
                 let lift = if kind.from < kind.to { 0.0 } else { 0.4 * kind.gap_m * f64::from(k) };
-                let root = stalk.at(ops::lerp(kind.from, kind.to, t)) + DVec3::new(c * out, lift, s * out);
+                let root =
+                    stalk.point_at(ops::lerp(kind.from, kind.to, t)) + DVec3::new(c * out, lift, s * out);
                 let steep = 1.0 - kind.steeper * late;
                 let way = Way {
                     root,
@@ -214,14 +216,14 @@ impl FlowerSpec {
     }
 }
 
-/// The ground at the foot of the stalk: petals that fell lie on it, each in a place of its own.
+/// The ground at the foot of the stalk: fallen petals lie on it, each in a place of its own.
 pub(crate) struct Ground {
     seat: Seat,
-    /// How far from the stalk there is something already.
+    /// Radius around the stalk that is already occupied.
     taken: f64,
-    /// Radius on which petals come to lie.
+    /// Radius at which petals will lie.
     radius: f64,
-    /// How large the petals on it are, how many of one ring, how many rings it takes and has.
+    /// Size of the petals at that radius.
     size: f64,
     count: u32,
     rings: u32,
@@ -233,7 +235,7 @@ impl Ground {
         Self { seat: *seat, taken: leaves.max(0.02), radius: 0.0, size: 0.0, count: 0, rings: 0, used: 0 }
     }
 
-    /// Room for `n` petals of a size: beside those that lie there already, or round them.
+    /// Reserves room for `n` petals of a size: next to those already there, or around them.
     pub(crate) fn next_ring(&mut self, n: u32, size: f64) {
         if n == self.count && self.used < self.rings && size <= self.size {
             self.used += 1;
@@ -246,14 +248,14 @@ impl Ground {
         self.rings = (1..20).take_while(|&m| f64::from(m) * round <= self.radius).last().unwrap_or(1);
     }
 
-    /// Where petal `k` of the ring comes to lie, as an azimuth.
+    /// Returns the azimuth at which petal `k` of the ring will lie.
     pub(crate) fn azimuth(&self, k: u32) -> f64 {
         let slot = f64::from(k * self.rings + self.used - 1);
         ops::TAU * slot / f64::from(self.count * self.rings).max(1.0)
     }
 
-    /// Moves a petal on its way down; 1 is on the ground, with its upper side up.
-    /// `from` and `azimuth`: the foot of the flower, and where on the ground its place is.
+    /// Moves a petal on its way down; 1 is on the ground, with its upper side up. `from` and `azimuth`: the foot of the
+    /// flower, and the azimuth of its place on the ground.
     pub(crate) fn drop(&self, grid: &mut Grid, (from, azimuth): (DVec3, f64), share: f64, seed: Seed) {
         let columns = grid.across.len();
         let rows = grid.along.len();
@@ -271,7 +273,7 @@ impl Ground {
         let fall = to(&lying) * to(&frame).inverse();
         let lowest = grid.points.iter().map(|&p| (fall * (p - centre)).y).fold(f64::INFINITY, f64::min);
         let end = DVec3::new(place.x, self.seat.centre.y + 0.0006 - lowest, place.z);
-        // Out of the flower first, then down.
+        // First out of the flower, then down.
         let away = DVec3::new(centre.x - from.x, 0.0, centre.z - from.z).normalize_or(DVec3::X);
         let aside = centre + away * (1.3 * self.size);
         let at = centre.lerp(aside, share).lerp(aside.lerp(end, share), share);

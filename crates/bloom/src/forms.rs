@@ -1,8 +1,8 @@
-//! Several series of one kind -> one law whose rate and time they share, as far as the days determine it.
+//! Fits one law to several series of one kind, which share its rate and time as far as the days determine them.
 //!
 //! `y_i(t) = A_i + B_i S(t; r, t0)`: each series has its own level and size, all have one rate r and one time t0. Three
-//! days cannot give three numbers and their errors for one series, but they can for several together. A and B are linear
-//! and solved for at every r and t0 (Golub and Pereyra 1973: variable projection).
+//! days cannot determine three parameters and their errors for one series, but they can for several together. A and B
+//! are linear and solved for at every r and t0 (Golub and Pereyra 1973: variable projection).
 
 use base::{CancelToken, Cancelled, ops};
 use serde::{Deserialize, Serialize};
@@ -18,9 +18,9 @@ pub enum Form {
     Gompertz,
     /// `1 - exp(-r (t - t0))`: slower and slower.
     Monomolecular,
-    /// A straight line: what is left where the days determine no law.
+    /// A straight line, used if the days determine no law.
     Straight,
-    /// The last value that was measured, unchanged: what is left where straight lines predict no better.
+    /// The last measured value, unchanged, used if straight lines predict no better.
     Still,
 }
 
@@ -28,7 +28,7 @@ impl Form {
     /// The three laws.
     pub const LAWS: [Self; 3] = [Self::Logistic, Self::Gompertz, Self::Monomolecular];
 
-    /// The word in files and reports.
+    /// Returns the word in files and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Logistic => "logistic",
@@ -39,7 +39,8 @@ impl Form {
         }
     }
 
-    /// How many of r and t0 a fit of this form has: another t0 of a monomolecular law is another level and size.
+    /// Returns how many of r and t0 a fit of this form has: for a monomolecular law another t0 is equivalent to another
+    /// level and size.
     fn shared_numbers(self, level: bool) -> usize {
         match self {
             Self::Straight | Self::Still => 0,
@@ -64,16 +65,16 @@ impl Form {
 pub struct Series {
     /// Days, increasing strictly.
     pub days: Vec<f64>,
-    /// A value a day.
+    /// One value per day.
     pub values: Vec<f64>,
 }
 
-/// Levels, sizes, rate and time of series that share the last two.
+/// Levels, sizes, rate and time of series that share rate and time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharedFit {
     /// The curve.
     pub form: Form,
-    /// A level under each curve is free; else it is 0.
+    /// Whether a level under each curve is free; otherwise it is 0.
     pub level: bool,
     /// Rate, per day.
     pub r: f64,
@@ -81,46 +82,50 @@ pub struct SharedFit {
     pub t0: f64,
     /// A and B of each series.
     pub linear: Vec<[f64; 2]>,
-    /// `None` without a degree of freedom or where the days do not determine the numbers.
+    /// Standard errors; `None` without a degree of freedom or if the days do not determine the parameters.
     pub errors: Option<SharedErrors>,
     /// Sum of squared residuals of all series.
     pub sse: f64,
-    /// Values less numbers fitted.
+    /// Number of values minus number of fitted parameters.
     pub freedom: i64,
-    /// r or t0 ended on the edge of what was searched.
+    /// Whether r or t0 ended on a bound of the search.
     pub on_bound: bool,
-    /// Each value less its prediction by a fit without its organ on its day; one row a series, empty before [`crate::choose`] asked
-    /// for it. `None` where the others do not determine the curve.
+    /// Each value minus its prediction by a fit without its organ on its day; one row per series, empty before
+    /// [`crate::choose`] requests it. `None` if the others do not determine the curve.
     pub left_out: Vec<Vec<Option<f64>>>,
 }
 
 /// Standard errors of a shared fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharedErrors {
-    /// Of the final and the first state of each series ([`SharedFit::states`]).
+    /// Errors of the final and the first state of each series ([`SharedFit::states`]).
     pub states: Vec<[f64; 2]>,
-    /// Of the final value of each series and of that on day 0: the states with the level under them, which is fitted as well.
+    /// Errors of the final value of each series and of that on day 0: the states with the level under them, which is
+    /// fitted as well.
     pub values: Vec<[f64; 2]>,
-    /// Of r.
+    /// Error of r.
     pub rate: f64,
-    /// Of t0.
+    /// Error of t0.
     pub time: f64,
 }
 
-/// Rates per span from nearly straight to a step, and places of t0 in spans from the first day, that the grid holds.
+/// Number of rates on the grid.
 const RATES: usize = 55;
+/// Range of rates per span on the grid, from nearly straight to a step.
 const RATE_RANGE: [f64; 2] = [0.5, 40.0];
+/// Number of values of t0 on the grid.
 const TIMES: usize = 37;
+/// Range of t0 on the grid, in spans from the first day.
 const TIME_RANGE: [f64; 2] = [-1.0, 2.0];
 
-/// Series of one kind, with those of equal days found: a curve has the same values on them.
+/// Series of one kind, grouped by equal days: a curve has the same values on them.
 struct Group<'a> {
     series: &'a [Series],
-    /// The sum of the values of each series.
+    /// Sum of the values of each series.
     sums: Vec<f64>,
-    /// Each list of days once.
+    /// The distinct lists of days.
     days: Vec<&'a [f64]>,
-    /// Which list each series has.
+    /// Index of the list of each series.
     list: Vec<usize>,
 }
 
@@ -146,7 +151,7 @@ impl<'a> Group<'a> {
     }
 }
 
-/// What a curve is on a list of days.
+/// Values of a curve on a list of days.
 #[derive(Default)]
 struct OnDays {
     curve: Vec<f64>,
@@ -156,7 +161,7 @@ struct OnDays {
 }
 
 impl OnDays {
-    /// False for a curve without motion on these days, which tells nothing.
+    /// Returns false for a curve that is constant on these days and so gives no information.
     fn fill(&mut self, level: bool, days: &[f64], curve: impl Fn(f64) -> f64) -> bool {
         self.curve.clear();
         self.curve.extend(days.iter().map(|&t| curve(t)));
@@ -170,7 +175,7 @@ impl OnDays {
     }
 }
 
-/// All series at one place of the grid.
+/// All series at one point of the grid.
 struct Cell<'a> {
     form: Form,
     level: bool,
@@ -178,7 +183,7 @@ struct Cell<'a> {
     on_days: Vec<OnDays>,
     /// A and B of each series.
     linear: Vec<[f64; 2]>,
-    /// Of each value, one series after the other.
+    /// Residual of each value, one series after the other.
     residuals: Vec<f64>,
 }
 
@@ -188,7 +193,7 @@ impl<'a> Cell<'a> {
         Self { form, level, group, on_days, linear: Vec::new(), residuals: Vec::new() }
     }
 
-    /// The sum of squares; none where the curve does not move on the days of a series.
+    /// Returns the sum of squares; `None` if the curve is constant on the days of a series.
     fn fill(&mut self, r: f64, t0: f64) -> Option<f64> {
         let (form, level) = (self.form, self.level);
         for (on, days) in self.on_days.iter_mut().zip(&self.group.days) {
@@ -214,11 +219,11 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Fits one curve to all series; `None` where none of the grid's curves moves on the days of each.
+/// Fits one curve to all series; `None` if each curve of the grid is constant on the days of some series.
 ///
-/// Each series needs 2 days or more. Guaranteed: the least sum of squares of the grid, refined until r and t0 are known
-/// to 1e-9 of themselves. Cost: about two thousand curves for each value, then a few hundred; a curve is computed once for
-/// all series of the same days.
+/// Each series needs 2 days or more. Guaranteed: the least sum of squares of the grid, refined until r and t0 have a
+/// relative precision of 1e-9. Cost: about two thousand curves for each value, then a few hundred; a curve is computed
+/// once for all series of the same days.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -278,23 +283,23 @@ pub fn fit_shared(
     Ok(Some(fit))
 }
 
-/// How many curves of the grid [`fit_shared`] compares with each value.
+/// Returns the number of curves of the grid that [`fit_shared`] compares with each value.
 pub(crate) fn curves_of(form: Form, level: bool) -> u64 {
     grid(form, level, 0.0, 1.0).len() as u64
 }
 
-/// How many curves of the grid [`crate::choose`] compares with each value.
+/// Returns the number of curves of the grid that [`crate::choose`] compares with each value.
 pub(crate) fn curves_compared() -> u64 {
     let laws = Form::LAWS.iter().map(|&form| curves_of(form, false) + curves_of(form, true));
     laws.sum::<u64>() + curves_of(Form::Straight, true)
 }
 
-/// Rates and times that are looked at first.
+/// Returns the rates and times of the initial grid.
 fn grid(form: Form, level: bool, first: f64, span: f64) -> Vec<[f64; 2]> {
     let share = |i: usize, n: usize| i as f64 / (n - 1) as f64;
     let times: Vec<f64> = match form {
         Form::Straight | Form::Still => return vec![[0.0, 0.0]],
-        // Another t0 is another A and B.
+        // Another t0 is equivalent to another A and B.
         Form::Monomolecular if level => vec![first],
         _ => (0..TIMES)
             .map(|i| first + span * ops::lerp(TIME_RANGE[0], TIME_RANGE[1], share(i, TIMES)))
@@ -305,10 +310,10 @@ fn grid(form: Form, level: bool, first: f64, span: f64) -> Vec<[f64; 2]> {
     rates.flat_map(|r| times.iter().map(move |&t0| [r, t0])).collect()
 }
 
-/// How finely the compass search ends, of the logarithm of r.
+/// Final step of the compass search, in the logarithm of r.
 const FINEST: f64 = 1e-10;
 
-/// A compass search within the grid's bounds: in the logarithm of r, and in t0.
+/// Runs a compass search within the grid's bounds: in the logarithm of r, and in t0.
 fn refine(
     cell: &mut Cell<'_>,
     (start, first, span): ([f64; 2], f64, f64),
@@ -323,7 +328,7 @@ fn refine(
     let still = form == Form::Monomolecular && level;
     let (low, high) = (RATE_RANGE[0] / span, RATE_RANGE[1] / span);
     let mut step = [0.16, if still { 0.0 } else { 0.084 * span }];
-    // r and t0 go together along the valley: both diagonals are looked along, too.
+    // r and t0 are correlated along the valley: the search includes both diagonals.
     let ways = [
         [1.0, 0.0],
         [-1.0, 0.0],
@@ -352,26 +357,26 @@ fn refine(
     Ok(Some((r, t0)))
 }
 
-/// One series of a fit whose numbers change a little.
+/// One series of a fit whose parameters change slightly.
 struct LinearPart {
     curve: Vec<f64>,
     centre: f64,
     square: f64,
-    /// What A and B take up of the curve's change with r and t0.
+    /// Share of the curve's change with r and t0 that A and B absorb.
     taken: [[f64; 2]; 2],
-    /// What they cannot take up, one a value.
+    /// Remainder of that change, one per value.
     rest: [Vec<f64>; 2],
 }
 
-/// The least squares of all numbers together, linear near the fit.
+/// Linear least squares of all parameters together, near the fit.
 pub(crate) struct Linearised {
     parts: Vec<LinearPart>,
-    /// Of the normal matrix of r and t0.
+    /// Inverse of the normal matrix of r and t0.
     inverse: [[f64; 2]; 2],
 }
 
 impl Linearised {
-    /// `None` where rate and time cannot be told apart.
+    /// Returns `None` if rate and time cannot be distinguished.
     pub(crate) fn new(fit: &SharedFit, all: &[Series]) -> Option<Self> {
         let shared = fit.form.shared_numbers(fit.level);
         let parts: Vec<LinearPart> =
@@ -389,7 +394,7 @@ impl Linearised {
             1 => [[1.0 / normal[0][0], 0.0], [0.0, 0.0]],
             _ => {
                 let det = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
-                // Rate and time that cannot be told apart are not determined.
+                // Rate and time that cannot be distinguished are not determined.
                 if det <= 1e-9 * normal[0][0] * normal[1][1] {
                     return None;
                 }
@@ -408,7 +413,7 @@ impl Linearised {
         let variance = fit.sse / fit.freedom as f64;
         let start = fit.form.curve(fit.r, fit.t0, 0.0);
         let by_curve = slopes_at(fit.form, fit.r, fit.t0, 0.0);
-        // u A + v B, and how it changes with the curve by itself.
+        // u A + v B, and its change with the curve itself.
         let of = |part: &LinearPart, b: f64, u: f64| {
             [(1.0, [0.0; 2]), (start, by_curve)].map(|(v, direct)| {
                 let level = if fit.level { u * u / part.curve.len() as f64 } else { 0.0 };
@@ -432,7 +437,7 @@ impl Linearised {
         is_finite.then_some(errors)
     }
 
-    /// How much of each value the fit takes up: all of it at 1.
+    /// Returns the leverage of each value: 1 if the fit follows it completely.
     pub(crate) fn leverage(&self, fit: &SharedFit) -> Vec<Vec<f64>> {
         let of = |part: &LinearPart| {
             let level = if fit.level { 1.0 / part.curve.len() as f64 } else { 0.0 };
@@ -466,7 +471,7 @@ impl LinearPart {
     }
 }
 
-/// How the curve changes with r and with t0, at each day.
+/// Returns the derivatives of the curve with respect to r and t0, at each day.
 fn slopes(form: Form, r: f64, t0: f64, days: &[f64]) -> [Vec<f64>; 2] {
     let rows: Vec<[f64; 2]> = days.iter().map(|&t| slopes_at(form, r, t0, t)).collect();
     [rows.iter().map(|d| d[0]).collect(), rows.iter().map(|d| d[1]).collect()]
@@ -486,31 +491,32 @@ fn slopes_at(form: Form, r: f64, t0: f64, t: f64) -> [f64; 2] {
 }
 
 impl SharedFit {
-    /// The level belongs to the states: a monomolecular curve has no part of its own below day 0.
+    /// Whether the level belongs to the states: a monomolecular curve has no part of its own below day 0.
     fn whole_level(&self) -> bool {
         self.level && self.form == Form::Monomolecular
     }
 
-    /// K, the final state of a series, and p0, that on day 0; above the level, but for the monomolecular law.
+    /// Returns K, the final state of a series, and p0, that on day 0; above the level, except for the monomolecular
+    /// law.
     pub fn states(&self, series: usize) -> [f64; 2] {
         let [a, b] = self.linear[series];
         let level = if self.whole_level() { a } else { 0.0 };
         [level + b, level + b * self.form.curve(self.r, self.t0, 0.0)]
     }
 
-    /// The value of a series on a day.
+    /// Returns the value of a series on a day.
     pub fn value(&self, series: usize, day: f64) -> f64 {
         let [a, b] = self.linear[series];
         a + b * self.form.curve(self.r, self.t0, day)
     }
 
-    /// Root of the mean square of what [`left_out`](Self::left_out) holds; `None` where it holds nothing.
+    /// Returns the root mean square of [`left_out`](Self::left_out); `None` if that is empty.
     pub fn loo_rmse(&self) -> Option<f64> {
         rms(self.left_out.iter().flatten().flatten().copied())
     }
 }
 
-/// Root of the mean square; `None` of nothing.
+/// Returns the root mean square; `None` of an empty list.
 pub(crate) fn rms(errors: impl Iterator<Item = f64>) -> Option<f64> {
     let rows: Vec<f64> = errors.collect();
     (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
@@ -524,7 +530,7 @@ mod tests {
         super::fit_shared(form, level, all, &CancelToken::new()).expect("not cancelled")
     }
 
-    /// Each series is an organ of its own.
+    /// Chooses with each series as an organ of its own.
     fn choose(all: &[Series]) -> Option<crate::Choice> {
         let organs: Vec<usize> = (0..all.len()).collect();
         crate::choose(all, &organs, &CancelToken::new()).expect("not cancelled")
@@ -557,7 +563,7 @@ mod tests {
 
     #[test]
     fn three_days_of_several_series_give_the_rate_that_they_share() {
-        // One number is shared by the monomolecular law: three days of six series determine it.
+        // The monomolecular law has one shared parameter: three days of six series determine it.
         let all = made(Form::Monomolecular, &[0.0, 1.0, 5.0], &LINEAR, 0.6, 0.0, 0.1, 1);
         let fit = fit_shared(Form::Monomolecular, true, &all).unwrap();
         let se = fit.errors.clone().unwrap().rate;
@@ -637,7 +643,7 @@ mod tests {
         assert!(!choose(&two).unwrap().determined, "two days determine no law");
     }
 
-    /// A curve is computed once for series of equal days, and whichever come in between make no difference.
+    /// A curve is computed once for series of equal days, whatever series lie between.
     #[test]
     fn series_of_equal_days_share_their_curves() {
         let odd = made(Form::Logistic, &[0.0, 2.5, 4.0, 7.0, 9.0], &LINEAR[..3], 0.7, 3.0, 0.15, 7);

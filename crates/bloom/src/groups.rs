@@ -1,8 +1,8 @@
-//! Measurements of several plants in groups -> a curve for each group, and whether one curve would do for all.
+//! Fits a curve to each group of plants, and tests whether one curve would do for all.
 //!
-//! All groups have one form of curve, each its own numbers. The test compares them with one curve for all: the extra sum of
-//! squares (Bates and Watts 1988, section 3.10) as F. Values of one plant are alike, which F takes for evidence; so plants
-//! change their groups at random, too, as often as the budget allows.
+//! All groups have one form of curve, each with its own parameters. The test compares them with one curve for all: the
+//! extra sum of squares (Bates and Watts 1988, section 3.10) as F. Values of one plant are correlated, which F takes
+//! for evidence; so plants are also permuted among groups at random, as often as the budget allows.
 
 use base::{CancelToken, Counted, Draw, Run, Seed, ops};
 
@@ -14,7 +14,7 @@ use crate::{
     fit_shared,
 };
 
-/// What was measured on the plants of one group.
+/// Measurements of the plants of one group.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlantGroup {
     /// Its name.
@@ -23,52 +23,53 @@ pub struct PlantGroup {
     pub plants: Vec<Series>,
 }
 
-/// Whether groups grow alike.
+/// Test of whether groups grow alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroupTest {
-    /// The sum of squared residuals of one curve for all groups, and of a curve for each, square metres.
+    /// Sum of squared residuals of one curve for all groups, and of a curve for each, square metres.
     pub squares: [f64; 2],
-    /// Degrees of freedom: the numbers that a curve for each group has more, and what is left of the values.
+    /// Degrees of freedom: the additional parameters of separate curves, and the remaining ones of the values.
     pub freedom: [u32; 2],
-    /// The extra sum of squares over that of a curve for each group, both by their degrees of freedom.
+    /// The extra sum of squares over that of separate curves, both by their degrees of freedom.
     pub f: f64,
-    /// How often F is as large where all grow alike, if all values are independent: plants measured once.
+    /// Probability of an F at least this large if all groups grow alike and all values are independent: plants measured
+    /// once.
     pub p: f64,
-    /// How many times plants changed their groups at random, and the share of these (and of what was found) that fits groups as
-    /// well: right also for plants that were measured again and again. None for too few plants, or too many values.
+    /// Result of random permutations of plants among groups, valid also for plants that were measured repeatedly.
+    /// `None` for too few plants, or too many values.
     pub permuted: Option<Permuted>,
 }
 
-/// What became of plants that change their groups.
+/// Result of permuting plants among groups.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Permuted {
-    /// How often they did.
+    /// Number of permutations.
     pub times: u32,
-    /// The share of them, counting what was found, in which groups fit as well.
+    /// Share of the permutations, including the observed one, in which the groups fit as well.
     pub p: f64,
 }
 
-/// Curves of groups, and what tells them apart.
+/// Curves of groups, and the test of their difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Groups {
     /// A law for each group, with its name as organ.
     pub law: GrowthLaw,
-    /// None for one group.
+    /// The test; `None` for one group.
     pub test: Option<GroupTest>,
 }
 
-/// Plants change their groups so often: the least p is one in 200.
+/// Number of permutations: the least p is one in 200.
 const PERMUTATIONS: u32 = 199;
-/// Fewer of them tell nothing.
+/// Least number of permutations that are informative.
 const FEWEST_PERMUTATIONS: u32 = 19;
-/// Days of a group on which something was measured, at least.
+/// Least number of days of a group with measurements.
 const FEWEST_DAYS: usize = 3;
 
-/// Fits a curve to each group: of the forms that all of them share the one with the least information criterion of Akaike,
-/// corrected for few values (Hurvich and Tsai 1989).
+/// Fits a curve to each group: of the forms, common to all groups, the one with the least information criterion of
+/// Akaike, corrected for few values (Hurvich and Tsai 1989).
 ///
-/// Guaranteed: the same bits for the same groups and seed. Cost: some 11,000 curves for each value, and 2,000 more for each time
-/// that plants change their groups.
+/// Guaranteed: the same bits for the same groups and seed. Cost: some 11,000 curves for each value, and 2,000 more for
+/// each permutation.
 ///
 /// # Errors
 /// [`FitError::TooFew`] for a group with fewer than 3 days; [`BloomError::OverBudget`], before anything is fitted, and
@@ -114,7 +115,7 @@ pub fn fit_groups(
     Ok(Groups { law, test })
 }
 
-/// All values of some plants by day, from the first day on.
+/// Returns all values of some plants by day, from the first day on.
 fn joined<'a>(plants: impl Iterator<Item = &'a Series>, first_day: f64) -> Series {
     let mut pairs: Vec<(f64, f64)> = plants
         .flat_map(|s| s.days.iter().zip(&s.values))
@@ -125,7 +126,7 @@ fn joined<'a>(plants: impl Iterator<Item = &'a Series>, first_day: f64) -> Serie
     Series { days, values }
 }
 
-/// A curve of one form for each group; none where it does not move on the days of one.
+/// Fits a curve of one form to each group; `None` if it is constant on the days of one.
 fn fits(
     (form, level): (Form, bool),
     pooled: &[Series],
@@ -141,7 +142,7 @@ fn fits(
     Ok(Some(out))
 }
 
-/// The fits of the form with the least criterion.
+/// Returns the fits of the form with the least criterion.
 fn chosen(pooled: &[Series], cancel: &CancelToken) -> Result<Option<Vec<SharedFit>>, BloomError> {
     let values: usize = pooled.iter().map(|s| s.values.len()).sum();
     let laws = Form::LAWS.iter().flat_map(|&form| [(form, false), (form, true)]);
@@ -157,7 +158,7 @@ fn chosen(pooled: &[Series], cancel: &CancelToken) -> Result<Option<Vec<SharedFi
     Ok(best.map(|b| b.1))
 }
 
-/// Akaike's criterion for few values; the scatter is one of the numbers.
+/// Returns Akaike's criterion for few values; the scatter is one of the parameters.
 fn criterion(fits: &[SharedFit], values: usize) -> f64 {
     let n = values as f64;
     let squares: f64 = fits.iter().map(|f| f.sse).sum();
@@ -249,7 +250,7 @@ fn test(
     Ok(Some(GroupTest { squares, freedom: [more, left], f, p, permuted }))
 }
 
-/// Lets plants change their groups, and counts how often curves for these fit as well.
+/// Permutes plants among groups, and counts how often the new groups fit as well.
 fn permuted(
     groups: &[PlantGroup],
     form: (Form, bool),
@@ -259,7 +260,7 @@ fn permuted(
 ) -> Result<Option<Permuted>, BloomError> {
     let sizes: Vec<usize> = groups.iter().map(|g| g.plants.len()).collect();
     let mut plants: Vec<&Series> = groups.iter().flat_map(|g| &g.plants).collect();
-    // Half of the budget; each fit looks through the whole grid of one form.
+    // Half of the budget; each fit searches the whole grid of one form.
     let half = run.budget.limit(Counted::Comparisons) / 2;
     let affordable = half / (values.max(1) * curves_of(form.0, form.1)).max(1);
     let times = u32::try_from(affordable).unwrap_or(u32::MAX).min(PERMUTATIONS);
@@ -281,13 +282,13 @@ fn permuted(
             rest = others;
         }
         let squares: Option<f64> = fits(form, &mixed, run.cancel)?.map(|f| f.iter().map(|f| f.sse).sum());
-        // Groups to which no curve of the form can be fitted tell nothing apart.
+        // Groups to which no curve of the form can be fitted show no difference.
         as_well += u32::from(squares.is_some_and(|s| s <= found * (1.0 + 1e-9)));
     }
     Ok(Some(Permuted { times, p: f64::from(as_well) / f64::from(times + 1) }))
 }
 
-/// In how many ways plants can be shared among groups of these sizes.
+/// Returns the number of ways to divide plants among groups of these sizes.
 fn ways(sizes: &[usize]) -> f64 {
     let (mut all, mut ways) = (0, 1.0);
     for &size in sizes {
@@ -307,7 +308,7 @@ mod tests {
         (0..4).map(|_| s.range(-0.5, 0.5)).sum::<f64>() * 3.0_f64.sqrt()
     }
 
-    /// Plants of a logistic; each is larger or smaller as a whole by `own`.
+    /// Makes plants of a logistic; each is larger or smaller as a whole by `own`.
     fn group(name: &str, truth: &Logistic, own: f64, plants: usize, seed: u64) -> PlantGroup {
         let mut s = Seed::new(seed).stream(Draw::Test);
         let plant = |_| {
@@ -322,7 +323,7 @@ mod tests {
     const TALL: Logistic = Logistic { k: 60.0, p0: 4.0, r: 0.25, offset: 0.0 };
     const SHORT: Logistic = Logistic { k: 50.0, p0: 4.0, r: 0.25, offset: 0.0 };
 
-    /// Plants change their groups some 40 times, which takes a second and not ten.
+    /// Allows some 40 permutations, which take a second and not ten.
     fn brief() -> Run<'static> {
         Run { budget: base::Budget { times: 0.03, raise: None }, ..Run::plain() }
     }
@@ -342,7 +343,7 @@ mod tests {
         assert_eq!(again.test, Some(test));
     }
 
-    /// Plants of one kind differ as wholes: F finds groups where there are none, and plants that change their groups do not.
+    /// Plants of one kind differ as wholes: F finds groups where there are none, and permutations do not.
     #[test]
     fn plants_that_differ_are_no_groups() {
         let (mut by_f, mut by_plants) = (0, 0);

@@ -1,9 +1,10 @@
 //! The inner loop of free-form deformation: eight points at a time.
 //!
-//! Kept of a point are its three coordinates: its weights cost less to work out anew in registers than to fetch from
-//! memory. As the weights of an axis sum to 1, `sum w_i P_i` is `P_0 + sum w_i (P_i - P_0)` over i >= 1, which saves a
-//! quarter of the work of a cubic lattice. No fused multiply-add: AVX-512, AVX2 and the plain form give the same bits. Vectors are named, not left to the compiler:
-//! of the plain form it makes code that is five times slower.
+//! Only the three coordinates of a point are stored: computing its weights again in registers costs less than fetching
+//! them from memory. As the weights of an axis sum to 1, `sum w_i P_i` is `P_0 + sum w_i (P_i - P_0)` over i >= 1,
+//! which saves a quarter of the work of a cubic lattice. No fused multiply-add: AVX-512, AVX2 and the plain form give
+//! the same bits. Vectors are explicit and not left to the compiler: from the plain form it makes code that is five
+//! times slower.
 
 use glam::DVec3;
 
@@ -27,7 +28,7 @@ pub(crate) fn deform(counts: [usize; 3], steps: &[[f64; 3]], blocks: &[Stu], out
                 unsafe_code,
                 reason = "the processor has AVX-512, as was just asked; a fifth of the time"
             )]
-            // SAFETY: the feature is there.
+            // SAFETY: the feature is available.
             return unsafe { avx512::dispatch(counts, steps, blocks, out) };
         }
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -35,14 +36,14 @@ pub(crate) fn deform(counts: [usize; 3], steps: &[[f64; 3]], blocks: &[Stu], out
                 unsafe_code,
                 reason = "the processor has AVX2, as was just asked; a third of the time"
             )]
-            // SAFETY: the feature is there.
+            // SAFETY: the feature is available.
             return unsafe { avx2::dispatch(counts, steps, blocks, out) };
         }
     }
     plain::dispatch(counts, steps, blocks, out);
 }
 
-/// Control points as differences to the first of their row, plane and block, so that the loop only adds.
+/// Returns control points as differences to the first of their row, plane and block, so that the loop only adds.
 pub(crate) fn differences([l, m, n]: [usize; 3], control: &[DVec3]) -> Vec<[f64; 3]> {
     let mut d: Vec<DVec3> = control.to_vec();
     for i in 1..l {
@@ -65,7 +66,7 @@ pub(crate) fn differences([l, m, n]: [usize; 3], control: &[DVec3]) -> Vec<[f64;
     d.into_iter().map(DVec3::into).collect()
 }
 
-/// The loop over `$parts` vectors of `LANES / $parts` numbers a block, for one set of instructions.
+/// Defines the loop over `$parts` vectors of `LANES / $parts` numbers per block, for one set of instructions.
 macro_rules! loops {
     ($(#[$feature:meta])? $parts:literal, $vector:ty) => {
         type Block = [$vector; $parts];
@@ -86,7 +87,8 @@ macro_rules! loops {
             [[splat(p[0]); $parts], [splat(p[1]); $parts], [splat(p[2]); $parts]]
         }
 
-        /// The Bernstein polynomials of degree `count - 1` at `x` by de Casteljau's recurrence: stable for any degree.
+        /// Evaluates the Bernstein polynomials of degree `count - 1` at `x` by de Casteljau's recurrence: stable for
+        /// any degree.
         $(#[$feature])?
         #[inline]
         fn bernstein(count: usize, x: Block, out: &mut [Block; MOST]) {
@@ -109,7 +111,7 @@ macro_rules! loops {
             }
         }
 
-        /// Constant counts let the compiler unroll; 0 stands for what `counts` says.
+        /// Constant counts let the compiler unroll; 0 stands for the value in `counts`.
         $(#[$feature])?
         fn blocks<const L: usize, const M: usize, const N: usize>(
             counts: [usize; 3],
@@ -158,7 +160,7 @@ macro_rules! loops {
         $(#[$feature])?
         pub(super) fn dispatch(counts: [usize; 3], steps: &[[f64; 3]], points: &[Stu], out: &mut [DVec3]) {
             match counts {
-                // What people use most.
+                // The most common lattice.
                 [4, 4, 4] => blocks::<4, 4, 4>(counts, steps, points, out),
                 [3, 3, 3] => blocks::<3, 3, 3>(counts, steps, points, out),
                 [5, 5, 5] => blocks::<5, 5, 5>(counts, steps, points, out),
@@ -297,7 +299,7 @@ mod tests {
             if std::arch::is_x86_feature_detected!("avx2") {
                 got.fill(DVec3::NAN);
                 #[expect(unsafe_code, reason = "the processor has AVX2, as was just asked")]
-                // SAFETY: the feature is there.
+                // SAFETY: the feature is available.
                 unsafe {
                     avx2::dispatch(counts, &steps, &points, &mut got);
                 }

@@ -1,4 +1,4 @@
-//! Box and control points -> deformed points: Bernstein free-form deformation (Huai, Yang and Cai 2019, eq 5).
+//! Bernstein free-form deformation of points by control points in a box (Huai, Yang and Cai 2019, eq 5).
 
 use base::{Run, map_until_cancelled};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::kernel::{self, LANES, Stu};
 use crate::{BloomError, Obb};
 
-/// Fewest and most control points along an axis. Above 16 the power of the lattice exceeds any scan's detail.
+/// Fewest and most control points along an axis. Above 16 the degree of the lattice exceeds any scan's detail.
 const COUNTS: core::ops::RangeInclusive<usize> = 2..=kernel::MOST;
 
 /// Control points of a lattice, in world coordinates.
@@ -42,7 +42,7 @@ fn check_counts(counts: [usize; 3]) -> Result<usize, BloomError> {
 }
 
 impl Lattice {
-    /// The undeformed lattice of a box: evaluating it gives every point back (linear precision).
+    /// Makes the undeformed lattice of a box: evaluating it returns every point (linear precision).
     ///
     /// # Errors
     /// [`BloomError::Lattice`] unless each count is 2 to 16.
@@ -52,7 +52,7 @@ impl Lattice {
         Ok(Self { counts, points })
     }
 
-    /// The coordinates (s, t, u) of each control point of the undeformed lattice, in row order.
+    /// Returns the coordinates (s, t, u) of each control point of the undeformed lattice, in row order.
     pub fn parameters(counts: [usize; 3]) -> impl Iterator<Item = DVec3> {
         let [l, m, n] = counts;
         let share = |i: usize, n: usize| i as f64 / (n.max(2) - 1) as f64;
@@ -61,22 +61,22 @@ impl Lattice {
     }
 }
 
-/// Places of a set of points in a box, worked out once and used for every frame.
+/// Coordinates of a set of points in a box, computed once and used for every frame.
 ///
-/// The coordinates are kept, not the weights that follow from them: three numbers a point instead of one for each
-/// control point, and quicker, as memory is slower than the dozen operations of an axis.
+/// Stores the coordinates, not the weights that follow from them: three numbers per point instead of one for each
+/// control point, and faster, as memory is slower than the dozen operations of an axis.
 #[derive(Clone, Debug)]
 pub struct Weights {
     counts: [usize; 3],
     len: usize,
-    /// s, t and u of eight points each; the last block is filled up with zeros.
+    /// s, t and u of eight points each; the last block is padded with zeros.
     blocks: Vec<Stu>,
 }
 
 impl Weights {
-    /// The weights of `points` in the undeformed lattice of `obb`.
+    /// Computes the coordinates of `points` in the undeformed lattice of `obb`.
     ///
-    /// Points outside the box are extrapolated; what is not finite becomes NaN. Cost: linear.
+    /// Points outside the box are extrapolated; points that are not finite become NaN. Cost: linear.
     ///
     /// # Errors
     /// [`BloomError::Lattice`] unless each count is 2 to 16.
@@ -96,18 +96,18 @@ impl Weights {
         Ok(Self { counts, len: points.len(), blocks })
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// There is no point.
+    /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Deformed positions of all points. Cost: points times control points, spread over the threads of `run`; see
-    /// `docs/bloom.md` for times.
+    /// Returns the deformed positions of all points. Cost: points times control points, spread over the threads of
+    /// `run`; see `docs/bloom.md` for times.
     ///
     /// # Errors
     /// [`BloomError::Lattice`] if the lattice has other counts, [`BloomError::Cancelled`].
@@ -117,7 +117,7 @@ impl Weights {
         Ok(out)
     }
 
-    /// [`apply`](Self::apply) into `out`, which must have one row a point.
+    /// As [`apply`](Self::apply), into `out`, which must have one row per point.
     ///
     /// # Errors
     /// As [`apply`](Self::apply), and [`BloomError::Length`].
@@ -130,7 +130,7 @@ impl Weights {
             return Err(BloomError::Length { what: "the deformed points", is: out.len(), wanted: self.len });
         }
         let steps = kernel::differences(self.counts, &lattice.points);
-        // 1024 blocks: 0.1 ms of work, and 400 kB to read and write, a piece of a core's cache.
+        // 1024 blocks: 0.1 ms of work, and 400 kB to read and write, a part of a core's cache.
         let pieces: Vec<_> = out
             .chunks_mut(1024 * LANES)
             .zip(self.blocks.chunks(1024))
@@ -145,7 +145,7 @@ impl Weights {
         Ok(())
     }
 
-    /// All weights of a point, one for each control point, in row order: a row of the matrix B of the fit.
+    /// Returns all weights of a point, one for each control point, in row order: a row of the matrix B of the fit.
     pub fn row(&self, point: usize, out: &mut Vec<f64>) {
         out.clear();
         if point >= self.len {
@@ -155,7 +155,7 @@ impl Weights {
         let axis = |a: usize| {
             let mut w = Vec::new();
             bernstein(self.counts[a], block[a][lane], &mut w);
-            // As in the loop: the first is what the others leave.
+            // As in the loop: the first weight is the remainder of the others.
             w[0] = 1.0 - w[1..].iter().sum::<f64>();
             w
         };
@@ -166,7 +166,7 @@ impl Weights {
     }
 }
 
-/// The `count` Bernstein polynomials of degree `count - 1` at `x`, by de Casteljau's recurrence: stable for
+/// Evaluates the `count` Bernstein polynomials of degree `count - 1` at `x`, by de Casteljau's recurrence: stable for
 /// any degree.
 fn bernstein(count: usize, x: f64, out: &mut Vec<f64>) {
     out.clear();

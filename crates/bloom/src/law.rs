@@ -1,4 +1,4 @@
-//! Organs at several days -> growth laws, saved, plotted, and moved to another species.
+//! Growth laws from organs on several days: fitted, saved, plotted, and applied to another species.
 
 use base::{CancelToken, Counted, Run, TimeUnit};
 use glam::DVec3;
@@ -16,7 +16,7 @@ use crate::{
 /// The value of [`GrowthLaw::schema`].
 pub const LAW_SCHEMA: &str = "burgeon.law/1";
 
-/// What a law describes.
+/// Quantity that a law describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quantity {
@@ -34,7 +34,7 @@ impl Quantity {
     /// The three coordinates.
     pub const AXES: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The word in files and plots.
+    /// Returns the word in files and plots.
     pub const fn word(self) -> &'static str {
         match self {
             Self::X => "x",
@@ -45,23 +45,24 @@ impl Quantity {
     }
 }
 
-/// What a law says of a day.
+/// Prediction of a law for a day.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// The value, metres.
     pub value: f64,
-    /// 9 of 10 new measurements lie between these; none where nothing tells.
+    /// Interval that contains 9 of 10 new measurements; `None` if it cannot be determined.
     pub interval: Option<[f64; 2]>,
 }
 
-/// An end of growth that is so many times what was measured is none that the days tell of.
+/// Ratio of the final value to the measured ones above which the days do not determine it.
 const BEYOND: f64 = 10.0;
 
-/// Nine tenths of Student's distribution lie within so many standard errors, by degrees of freedom from 1.
+/// Half width of the interval with nine tenths of Student's distribution, in standard errors, by degrees of freedom
+/// from 1.
 const STUDENT: [f64; 10] = [6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812];
 
 fn quantile(freedom: usize) -> f64 {
-    // Beyond the table 1.645 and what falls with the degrees of freedom: to 0.002.
+    // Beyond the table it is 1.645 plus a term that decreases with the degrees of freedom, to 0.002.
     STUDENT.get(freedom.max(1) - 1).copied().unwrap_or_else(|| 1.645 + 1.6 / freedom as f64)
 }
 
@@ -72,18 +73,18 @@ pub struct RegionLaw {
     pub organ: String,
     /// Region from 1 at the base; 0 for the whole organ.
     pub region: usize,
-    /// What of it.
+    /// The quantity.
     pub axis: Quantity,
-    /// The curve that K, p0, r and the offset are of. Default logistic.
+    /// Form of the curve with K, p0, r and the offset. Default logistic.
     #[serde(default)]
     pub form: Form,
-    /// K, p0, r and the constant under the curve; metres and days since the first stage. What grows ends at
-    /// [`final_value`](Self::final_value), which is K above that constant. Of a straight line K is the value on the last day and r
-    /// the change a day; of a value that stands still K is the last one.
+    /// K, p0, r and the constant under the curve; metres and days since the first stage. Growth ends at
+    /// [`final_value`](Self::final_value), which is K above that constant. For a straight line K is the value on the
+    /// last day and r the change per day; for a constant value K is the last one.
     #[serde(flatten)]
     pub law: Logistic,
-    /// The stages determine the law: it predicts stages that are left out better than a straight line. What is not
-    /// determined drives nothing. A file without this word: determined unless there are 3 values, which leave no degree of
+    /// Whether the stages determine the law: it predicts left-out stages better than a straight line. A law that is not
+    /// determined drives nothing. Absent in a file: determined unless there are 3 values, which leave no degree of
     /// freedom.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub determined: Option<bool>,
@@ -100,9 +101,9 @@ pub struct RegionLaw {
     pub value_errors: Option<[f64; 2]>,
     /// Coefficient of determination.
     pub r2: f64,
-    /// The same for the degrees of freedom; none with 3 stages.
+    /// The same, adjusted for the degrees of freedom; `None` for 3 stages.
     pub r2_adjusted: Option<f64>,
-    /// Leave-one-out error, metres; none below 4 stages.
+    /// Leave-one-out error, metres; `None` for fewer than 4 stages.
     pub loo_rmse: Option<f64>,
     /// Days since the first stage.
     pub days: Vec<f64>,
@@ -127,7 +128,7 @@ pub struct GrowthLaw {
     pub first_day: f64,
     /// Days from the first to the last stage, above 0.
     pub span_days: f64,
-    /// What is called a day here and in the laws: of a table of ages in years, a year.
+    /// Unit that is called a day here and in the laws: for a table of ages in years, a year.
     #[serde(default, skip_serializing_if = "TimeUnit::is_day")]
     pub time: TimeUnit,
     /// Regions of each organ.
@@ -137,8 +138,8 @@ pub struct GrowthLaw {
 }
 
 impl GrowthLaw {
-    /// A law without measurements: all of every organ follows one logistic from 10 % to nearly 100 %, faster for a
-    /// greater `rate` per day.
+    /// Makes a law without measurements: all of every organ follows one logistic from 10 % to nearly 100 %, faster for
+    /// a greater `rate` per day.
     pub fn logistic(name: &str, span_days: f64, rate: f64) -> Self {
         let law = Logistic { k: 1.0, p0: 0.1, r: rate, offset: 0.0 };
         let row = RegionLaw {
@@ -169,7 +170,7 @@ impl GrowthLaw {
         }
     }
 
-    /// No law: everything goes at an even pace from the first to the last day.
+    /// Makes an even pace from the first to the last day.
     pub fn even(first_day: f64, last_day: f64) -> Self {
         let mut law = Self::logistic("even", (last_day - first_day).max(1e-9), 1.0);
         law.first_day = first_day;
@@ -177,7 +178,8 @@ impl GrowthLaw {
         law
     }
 
-    /// Everything that makes a law read from a file useless: other schema, no law, numbers that are not finite.
+    /// Iterates over all faults that make a law from a file unusable: other schema, no law, numbers that are not
+    /// finite.
     pub fn validate(&self) -> impl Iterator<Item = LawFault> + '_ {
         let head = (self.schema != LAW_SCHEMA).then(|| LawFault::Schema(self.schema.clone()));
         let span = !(self.span_days > 0.0 && self.span_days.is_finite() && self.first_day.is_finite());
@@ -191,13 +193,13 @@ impl GrowthLaw {
             .chain(rows)
     }
 
-    /// How far an organ is on its way from its shape at day `from` to that at day `to`: 0 and 1 at these days,
+    /// Returns the progress of an organ from its shape at day `from` to that at day `to`: 0 and 1 at these days,
     /// monotone between (`g = (f(x) - f(from)) / (f(to) - f(from))`).
     ///
-    /// `along` is the place on the organ, 0 at the base to 1 at the tip: between the middles of two regions their
-    /// laws are blended. A law that hardly moves says nothing about pace: then the organ's size law speaks, then
-    /// that of the other organs, then a straight line. An organ that the law does not know follows the first one
-    /// that it knows: so a law moves to another species. Days are since the first stage.
+    /// `along` is the position on the organ, 0 at the base to 1 at the tip: between the middles of two regions their
+    /// laws are blended. A law that hardly moves does not determine the pace: then the organ's size law applies, then
+    /// that of the other organs, then a straight line. An organ that the law does not contain follows the first one
+    /// that it contains: in this way a law applies to another species. Days are since the first stage.
     pub fn progress(&self, organ: &str, axis: Quantity, along: f64, from: f64, to: f64, day: f64) -> f64 {
         let straight = even_pace(from, to, day);
         let organ = self.followed(organ);
@@ -217,8 +219,8 @@ impl GrowthLaw {
         if share <= 0.0 { first } else { base::ops::lerp(first, of(low_region + 1), share) }
     }
 
-    /// [`progress`](Self::progress) of all three coordinates at once, each weighing as much as it moves: the pace
-    /// of a place in a frame that turns with its organ.
+    /// As [`progress`](Self::progress), for all three coordinates at once, each weighted by its movement: the pace of a
+    /// place in a frame that turns with its organ.
     pub fn pace_at(&self, organ: &str, along: f64, from: f64, to: f64, day: f64) -> f64 {
         let name = self.followed(organ);
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -233,13 +235,13 @@ impl GrowthLaw {
         if weights > 0.0 { sum / weights } else { self.progress(organ, Quantity::Size, along, from, to, day) }
     }
 
-    /// Something in it sets a pace: a law that its stages determine and that moves.
+    /// Whether some law sets a pace: one that its stages determine and that moves.
     pub fn sets_pace(&self) -> bool {
         let (first, last) = (0.0, self.span_days);
         self.laws.iter().any(|l| l.pace(first, last, 0.5 * last).is_some())
     }
 
-    /// The organ whose laws an organ follows: its own; else those of the first organ with a law that is determined.
+    /// Returns the organ whose laws an organ follows: its own; otherwise the first organ with a law that is determined.
     fn followed<'a>(&'a self, organ: &'a str) -> &'a str {
         if self.laws.iter().any(|l| l.organ == organ) {
             return organ;
@@ -253,7 +255,7 @@ impl GrowthLaw {
         row.pace(from, to, day)
     }
 
-    /// Mean of the size laws of all organs.
+    /// Returns the mean of the size laws of all organs.
     fn any_pace(&self, from: f64, to: f64, day: f64) -> Option<f64> {
         let rows = self.laws.iter().filter(|l| l.axis == Quantity::Size);
         let all: Vec<f64> = rows.filter_map(|l| l.pace(from, to, day)).collect();
@@ -261,14 +263,14 @@ impl GrowthLaw {
     }
 }
 
-/// The share of the time from `from` to `to` that is over; 0 before and 1 after, as nothing says how it goes on.
+/// Returns the elapsed share of the time from `from` to `to`; 0 before and 1 after, since the continuation is unknown.
 fn even_pace(from: f64, to: f64, day: f64) -> f64 {
     let share = (day - from) / (to - from);
     if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
 }
 
 impl RegionLaw {
-    /// The value on a day since the first stage.
+    /// Returns the value on a day since the first stage.
     pub fn value(&self, day: f64) -> f64 {
         let l = self.law;
         match self.form {
@@ -285,8 +287,8 @@ impl RegionLaw {
         }
     }
 
-    /// What the law tends to: K above the constant under the curve. None for what tends to nothing (a straight line), for a law
-    /// that is not determined, and where it is so far beyond what was measured that nothing tells how far.
+    /// Returns the limit of the law: K above the constant under the curve. `None` for a straight line, which has no
+    /// limit, for a law that is not determined, and if the limit is far beyond the measurements and so unknown.
     pub fn final_value(&self) -> Option<f64> {
         let has_end =
             !matches!(self.form, Form::Straight | Form::Still) && self.is_determined() && self.law.r > 0.0;
@@ -295,12 +297,12 @@ impl RegionLaw {
         (has_end && (self.values.is_empty() || end.abs() <= BEYOND * most)).then_some(end)
     }
 
-    /// The value on a day since the first stage, and between which values 9 of 10 new measurements lie on it; none without a degree
-    /// of freedom.
+    /// Returns the value on a day since the first stage, and the interval that contains 9 of 10 new measurements on it;
+    /// no interval without a degree of freedom.
     ///
-    /// By the residuals and the errors of the parameters (Seber and Wild 1989, equation 5.23); of a law whose rate several organs
-    /// share it is as wide as if they did not. Beyond the days the form of the curve is taken for granted. A value that stands still
-    /// has the scatter of the steps, more of them the farther the day is.
+    /// By the residuals and the errors of the parameters (Seber and Wild 1989, equation 5.23); for a law whose rate
+    /// several organs share it is as wide as if they did not. Beyond the days the form of the curve is assumed to hold.
+    /// A constant value has the scatter of the steps, more of them the farther the day is.
     pub fn predict(&self, day: f64) -> Prediction {
         let value = self.value(day);
         let half = match self.form {
@@ -317,7 +319,7 @@ impl RegionLaw {
     }
 
     fn half_width(&self, day: f64) -> Option<f64> {
-        // A level under a curve is a number that was fitted, too; that of a monomolecular law is K's and p0's.
+        // A level under a curve is a fitted parameter, too; that of a monomolecular law is part of K and p0.
         let has_level = self.law.offset.abs() > 0.0 && self.form != Form::Monomolecular;
         let numbers = match self.form {
             Form::Straight => 2,
@@ -329,7 +331,7 @@ impl RegionLaw {
             self.days.iter().zip(&self.values).map(|(&d, v)| (v - self.value(d)) * (v - self.value(d))).sum();
         let slopes = |day: f64| self.slopes(day);
         let rows: Vec<[f64; 4]> = self.days.iter().map(|&d| slopes(d)).collect();
-        // Numbers in their own units: what p0 of a curve that rises late changes is a millionth of what K does.
+        // Parameters in their own units: the effect of p0 on a curve that rises late is a millionth of that of K.
         let sizes = [0, 1, 2, 3].map(|i| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt());
         let scaled =
             |row: [f64; 4]| [0, 1, 2, 3].map(|i| if sizes[i] > 0.0 { row[i] / sizes[i] } else { 0.0 });
@@ -339,21 +341,22 @@ impl RegionLaw {
                 (0..numbers).for_each(|j| normal[i * numbers + j] += row[i] * row[j]);
             }
         }
-        // Numbers that the days cannot tell apart are held together by this much, which moves no other.
+        // Regularises parameters that the days cannot distinguish, without moving the others.
         (0..numbers).for_each(|i| normal[i * numbers + i] += 1e-9);
         let own = scaled(slopes(day));
         let mut by = own[..numbers].to_vec();
         geom::solve_positive(&mut normal, &mut by)?;
         let leverage: f64 = by.iter().zip(&own).map(|(a, b)| a * b).sum();
         let variance = sse / freedom as f64 * (1.0 + leverage.max(0.0));
-        // Days that were left out tell of the choice of the form as well.
+        // Left-out days also include the uncertainty of the choice of the form.
         let left_out = self.loo_rmse.unwrap_or(0.0);
-        // A form that was chosen among several fits better than one that was given: it takes a degree of freedom more.
+        // A form chosen among several fits better than a given one: it costs one more degree of freedom.
         let chosen = usize::from(self.form != Form::Straight && freedom > 1);
         Some(quantile(freedom - chosen) * variance.sqrt().max(left_out))
     }
 
-    /// How the value on a day changes with K, p0 and r, each by its own size, and with the level.
+    /// Returns the derivatives of the value on a day with respect to K, p0 and r, each scaled by its size, and to the
+    /// level.
     fn slopes(&self, day: f64) -> [f64; 4] {
         if self.form == Form::Straight {
             return [1.0, day, 0.0, 0.0];
@@ -374,14 +377,14 @@ impl RegionLaw {
         ]
     }
 
-    /// Whether its numbers, and its values on the first and the last day, are numbers.
+    /// Whether its parameters, and its values on the first and the last day, are finite.
     fn is_finite(&self, span_days: f64) -> bool {
         let Logistic { k, p0, r, offset } = self.law;
         [k, p0, r, offset, self.value(0.0), self.value(span_days)].iter().all(|x| x.is_finite())
     }
 
-    /// A straight line from the first value to the last, which determines nothing: for days so near to one another, or values so
-    /// far apart, that the numbers of its curve are none.
+    /// Makes a straight line from the first value to the last, which determines nothing, for days so close together, or
+    /// values so far apart, that the parameters of its curve are not finite.
     fn straightened(self, span_days: f64) -> Self {
         let [first, last] = [self.values.first(), self.values.last()].map(|v| v.copied().unwrap_or(0.0));
         let slope = (last - first) / span_days;
@@ -397,7 +400,7 @@ impl RegionLaw {
         }
     }
 
-    /// The stages determine the law.
+    /// Whether the stages determine the law.
     pub fn is_determined(&self) -> bool {
         self.determined.unwrap_or(self.days.len() != 3)
     }
@@ -408,24 +411,24 @@ impl RegionLaw {
         }
         let (a, b, x) = (self.value(from), self.value(to), self.value(day));
         let level = self.values.iter().map(|v| v.abs()).fold(a.abs().max(b.abs()), f64::max);
-        // 3 % of its level: less is noise of the scan; and a law that does not follow its values is none.
+        // 3 % of its level: less is noise of the scan; and a law that does not follow its values is unusable.
         let moves = (b - a).abs() > 0.03 * level && self.r2 > 0.5;
-        // Beyond the last stage growth goes on at most half as far again.
+        // Beyond the last stage growth continues by at most half.
         moves.then(|| ((x - a) / (b - a)).clamp(-0.5, 1.5)).filter(|g| g.is_finite())
     }
 }
 
-/// What is wrong with a law.
+/// Fault of a law.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LawFault {
-    /// Not a law, or of a later version.
+    /// The file is not a law, or of a later version.
     #[error("its schema is {0:?}, not \"burgeon.law/1\"")]
     Schema(String),
-    /// The span is no positive number.
+    /// The span is not a positive number.
     #[error("its span_days is not above 0")]
     Span,
-    /// There is no law in it.
+    /// The file contains no law.
     #[error("it holds no law")]
     Empty,
     /// A law has numbers that are not finite, or columns of unequal length.
@@ -433,16 +436,16 @@ pub enum LawFault {
     Row(usize),
 }
 
-/// One day of a series: its organs, those that are the same carrying the same name on each day.
+/// One day of a series: its organs, with the same name for the same organ on each day.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
     /// The day, in any count.
     pub day: f64,
-    /// What was measured.
+    /// The measured organs.
     pub organs: Vec<ScanOrgan>,
 }
 
-/// How laws are fitted.
+/// Settings of the fit of laws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LawSpec {
     /// Equal parts of each organ from base to tip, 1 to 20. Default 3.
@@ -457,12 +460,12 @@ impl Default for LawSpec {
     }
 }
 
-/// Fits a law to each organ that is there on at least 3 days: for each region the means of x, y and z from the
-/// organ's base (Huai, Yang and Cai 2019, step 3), and the organ's size.
+/// Fits a law to each organ that exists on at least 3 days: for each region the means of x, y and z from the organ's
+/// base (Huai, Yang and Cai 2019, step 3), and the organ's size.
 ///
 /// # Errors
-/// [`FitError::TooFew`] below 3 stages, [`FitError::Order`] for days that do not increase, and for a coordinate
-/// that changes its sign where the offset is [`Offset::Zero`]; [`BloomError::OverBudget`]; [`BloomError::Cancelled`].
+/// [`FitError::TooFew`] below 3 stages, [`FitError::Order`] for days that do not increase, and for a coordinate that
+/// changes its sign if the offset is [`Offset::Zero`]; [`BloomError::OverBudget`]; [`BloomError::Cancelled`].
 pub fn fit_stages(
     name: &str,
     stages: &[Stage],
@@ -516,12 +519,12 @@ pub fn fit_stages(
     Ok(GrowthLaw { schema, name, first_day, span_days, time, regions, laws })
 }
 
-/// Fits a law to each series of sizes: days, increasing strictly, with values in metres. Series of one kind share what
-/// they determine together (`leaf-1` and `leaf-2` are leaves; `tree 3` is a tree).
+/// Fits a law to each series of sizes: days, increasing strictly, with values in metres. Series of one kind share
+/// parameters that they determine together (`leaf-1` and `leaf-2` are leaves; `tree 3` is a tree).
 ///
 /// # Errors
-/// [`FitError`], as [`fit_logistic`](crate::fit_logistic), with fewer than 3 days in every series; a series of fewer is left
-/// out. [`BloomError::OverBudget`], before anything is fitted, and [`BloomError::Cancelled`].
+/// [`FitError`], as [`fit_logistic`](crate::fit_logistic), with fewer than 3 days in every series; a series of fewer is
+/// left out. [`BloomError::OverBudget`], before anything is fitted, and [`BloomError::Cancelled`].
 pub fn fit_sizes(
     name: &str,
     series: &[(String, Series)],
@@ -550,15 +553,15 @@ pub fn fit_sizes(
     Ok(GrowthLaw { schema, name, first_day, span_days: last - first_day, time, regions: 1, laws })
 }
 
-/// The kind of an organ: its name without number, plant and what marks it as new (`new-leaf-4` is a `leaf`, and so is
-/// `plant 3: leaf-2`).
+/// Returns the kind of an organ: its name without number, plant and the mark of a new one (`new-leaf-4` is a `leaf`,
+/// and so is `plant 3: leaf-2`).
 fn kind_of(organ: &str) -> &str {
     let organ = organ.rsplit(": ").next().unwrap_or(organ);
     let name = organ.strip_prefix("new-").unwrap_or(organ);
     name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches(['-', '_', ' '])
 }
 
-/// Counts how often sizes are compared with laws, before any is.
+/// Checks the number of comparisons of sizes with laws against the budget, before any is made.
 fn check_sizes(rows: &[Measured], run: &Run<'_>, remedy: &'static str) -> Result<(), BloomError> {
     let sizes: u64 = rows.iter().map(|r| r.series.values.len() as u64).sum();
     run.budget.check(Counted::Comparisons, sizes.saturating_mul(curves_compared()), remedy)?;
@@ -574,8 +577,8 @@ pub(crate) struct Measured {
     pub(crate) series: Series,
 }
 
-/// Laws of all series, in their order. Those of one kind of organ and one axis share rate and time; where no shared law
-/// is determined, a series of 5 values or more may determine one of its own.
+/// Fits laws to all series, in their order. Those of one kind of organ and one axis share rate and time; if no shared
+/// law is determined, a series of 5 values or more may determine one of its own.
 pub(crate) fn fit_rows(
     rows: Vec<Measured>,
     span: f64,
@@ -605,7 +608,7 @@ pub(crate) fn fit_rows(
     Ok(laws.into_iter().flatten().collect())
 }
 
-/// Mean place of each region from the base; of an empty region that of the one before.
+/// Returns the mean position of each region from the base; an empty region takes that of the one before.
 fn region_means(organ: &ScanOrgan, regions: usize) -> Vec<DVec3> {
     let mut last = DVec3::ZERO;
     organ
@@ -620,7 +623,7 @@ fn region_means(organ: &ScanOrgan, regions: usize) -> Vec<DVec3> {
         .collect()
 }
 
-/// The law of one series: of its own where its days determine that better than what its kind shares.
+/// Makes the law of one series: its own if its days determine that better than the shared one of its kind.
 fn row(
     of: &Measured,
     choice: Option<(&Choice, usize)>,
@@ -645,7 +648,7 @@ fn row(
         straight_rmse: None,
         last_rmse: None,
         standard_errors: fit.standard_errors,
-        // The constant under a logistic of its own is not fitted.
+        // The constant under its own logistic is not fitted.
         value_errors: fit.standard_errors.map(|[k, p0, _]| [k, p0]),
         r2: fit.r2,
         r2_adjusted: fit.r2_adjusted,
@@ -696,13 +699,13 @@ fn row(
     Ok(out)
 }
 
-/// Whether the days of a series determine a logistic of its own: by the rule of [`Choice::determined`].
+/// Whether the days of a series determine its own logistic: by the rule of [`Choice::determined`].
 fn is_own(fit: &Fit, (series, straight): (&Series, &SharedFit), span: f64) -> bool {
     let n = series.values.len();
     if n < 4 || fit.law.on_bound(span) {
         return false;
     }
-    // What meets every value leaves no error to compare.
+    // A fit through every value leaves no error to compare.
     if fit.loo_rmse.is_some_and(|e| e <= 1e-9 * series.values[n - 1].abs()) {
         return true;
     }
@@ -720,7 +723,7 @@ fn is_own(fit: &Fit, (series, straight): (&Series, &SharedFit), span: f64) -> bo
         && earned(&left_out_of_mean(series))
 }
 
-/// Root of the mean square of what was left out; `None` where nothing was.
+/// Returns the root mean square of left-out errors; `None` if there are none.
 fn rms_of(errors: &[Option<f64>]) -> Option<f64> {
     rms(errors.iter().flatten().copied())
 }
@@ -733,7 +736,7 @@ mod tests {
     use super::*;
     use base::{Draw, Seed};
 
-    /// A straight organ whose tip moves by a known law.
+    /// Makes a straight organ whose tip moves by a known law.
     fn stage(day: f64, law: &Logistic) -> Stage {
         let mut s = Seed::new(9).stream(Draw::Test);
         let length = law.value(day);
@@ -830,7 +833,7 @@ mod tests {
         };
         assert_eq!((much.what, much.number), (Counted::Comparisons, 48_880 * curves_compared()));
         assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
-        // Whatever the budget, the few that are left are fitted.
+        // Whatever the budget, the remaining few are fitted.
         assert!(fit_sizes("x", &series[..3], Offset::Auto, &Run::plain()).is_ok());
     }
 

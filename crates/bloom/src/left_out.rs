@@ -1,23 +1,23 @@
-//! What everything else says of an organ on a day: predictions without that day of the organ.
+//! Leave-one-out predictions of an organ on a day: from all other values, without that day of the organ.
 
 use base::{CancelToken, Cancelled};
 
 use crate::forms::Linearised;
 use crate::{Series, SharedFit, fit_shared};
 
-/// Up to so many values, times how often some are left out, all numbers are fitted anew each time. Of more, a day of an organ hardly
-/// moves the curve, and how it moves follows from its leverage (`many_values_are_left_out_by_leverage`).
+/// Most values, times the number of left-out sets, for which all parameters are refitted each time. With more, a day of
+/// an organ hardly moves the curve, and its effect follows from its leverage (`many_values_are_left_out_by_leverage`).
 const LEFT_OUT_BY_REFIT: usize = 20_000;
 
-/// A value less its prediction; `None` where the others determine none.
+/// Each value minus its prediction; `None` if the others determine none.
 type LeftOut = Vec<Vec<Option<f64>>>;
 
-/// The values of series by organ and day. One sitting is left out as a whole: the regions of a leaf on a day were seen in one scan,
-/// and one of them would give away the others.
+/// The values of series by organ and day. One sitting is left out as a whole: the regions of a leaf on a day were
+/// measured in one scan, and one of them would give away the others.
 pub(crate) struct Sittings(Vec<Vec<(usize, usize)>>);
 
 impl Sittings {
-    /// `organs` says of each series whose it is.
+    /// Groups the values; `organs` gives the organ of each series.
     pub(crate) fn new(all: &[Series], organs: &[usize]) -> Self {
         let mut rows: Vec<(usize, f64, (usize, usize))> = Vec::new();
         for (k, (series, &organ)) in all.iter().zip(organs).enumerate() {
@@ -30,8 +30,8 @@ impl Sittings {
         Self(rows.chunk_by(is_one).map(|sitting| sitting.iter().map(|row| row.2).collect()).collect())
     }
 
-    /// Fills in what is left of each value without its sitting: exactly, by a fit of all numbers without it, or of very many values
-    /// by leverage.
+    /// Computes the residual of each value without its sitting: exactly, by a fit of all parameters without it, or for
+    /// very many values by leverage.
     pub(crate) fn leave_out(
         &self,
         fit: &mut SharedFit,
@@ -39,7 +39,7 @@ impl Sittings {
         cancel: &CancelToken,
     ) -> Result<(), Cancelled> {
         let values: usize = all.iter().map(|s| s.values.len()).sum();
-        // Lines share no number, and are cheap.
+        // Lines share no parameter, and are cheap.
         let is_long = self.0.len().saturating_mul(values) > LEFT_OUT_BY_REFIT;
         fit.left_out = if is_long { by_leverage(fit, all) } else { self.by_refit(fit, all, cancel)? };
         Ok(())
@@ -50,7 +50,7 @@ impl Sittings {
         for sitting in &self.0 {
             let rest = without(all, sitting);
             let Some(again) = fit_shared(fit.form, fit.level, &rest, cancel)? else { continue };
-            // More numbers than values: any curve goes through what is left.
+            // More parameters than values: any curve fits the rest.
             if again.freedom < 0 {
                 continue;
             }
@@ -61,7 +61,7 @@ impl Sittings {
         Ok(out)
     }
 
-    /// The mean of the squared errors falls by more than its standard error. Each sitting counts once.
+    /// Whether the mean of the squared errors falls by more than its standard error. Each sitting counts once.
     pub(crate) fn earn(&self, law: &[Vec<Option<f64>>], rival: &[Vec<Option<f64>>]) -> bool {
         let gains = self.0.iter().filter_map(|sitting| {
             let gain = |&(k, i): &(usize, usize)| {
@@ -75,10 +75,10 @@ impl Sittings {
     }
 }
 
-/// Series without some of their values.
+/// Returns series without some of their values.
 fn without(all: &[Series], sitting: &[(usize, usize)]) -> Vec<Series> {
     let mut rest = all.to_vec();
-    // From the last value on: the places of those before it stay.
+    // From the last value on: the indices of those before it stay valid.
     for &(k, i) in sitting.iter().rev() {
         rest[k].days.remove(i);
         rest[k].values.remove(i);
@@ -86,7 +86,7 @@ fn without(all: &[Series], sitting: &[(usize, usize)]) -> Vec<Series> {
     rest
 }
 
-/// A residual over what is free of it (Allen 1974).
+/// Returns each residual over the remaining share after its leverage (Allen 1974).
 fn by_leverage(fit: &SharedFit, all: &[Series]) -> LeftOut {
     let Some(leverage) = Linearised::new(fit, all).map(|l| l.leverage(fit)) else {
         return all.iter().map(|s| vec![None; s.values.len()]).collect();
@@ -99,21 +99,21 @@ fn by_leverage(fit: &SharedFit, all: &[Series]) -> LeftOut {
     all.iter().zip(leverage).enumerate().map(of).collect()
 }
 
-/// Each value less the mean of the others of its series: what no growth predicts.
+/// Returns each value minus the mean of the others of its series: the prediction without growth.
 pub(crate) fn left_out_of_mean(s: &Series) -> Vec<Option<f64>> {
     let n = s.values.len() as f64;
     let sum: f64 = s.values.iter().sum();
     s.values.iter().map(|y| (n > 1.5).then(|| y - (sum - y) / (n - 1.0))).collect()
 }
 
-/// Each value less the one before it, the first less the next: what the last value predicts.
+/// Returns each value minus the one before it, the first minus the next: the prediction by the last value.
 pub(crate) fn left_out_of_last(s: &Series) -> Vec<Option<f64>> {
     let v = &s.values;
     let other = |i: usize| if i == 0 { v.get(1) } else { v.get(i - 1) };
     (0..v.len()).map(|i| other(i).map(|o| v[i] - o)).collect()
 }
 
-/// The mean of the gains lies above 0 by more than its standard error.
+/// Whether the mean of the gains exceeds 0 by more than its standard error.
 pub(crate) fn earns(gains: impl Iterator<Item = f64>) -> bool {
     let gains: Vec<f64> = gains.collect();
     let n = gains.len() as f64;
@@ -131,7 +131,7 @@ mod tests {
     use crate::Form;
     use base::{Draw, Seed};
 
-    /// Two leaves of two regions each, grown by one rate, whose regions share the noise of their day.
+    /// Makes two leaves of two regions each, grown by one rate, whose regions share the noise of their day.
     fn leaves(days: &[f64], seed: u64) -> (Vec<Series>, Vec<usize>) {
         let mut s = Seed::new(seed).stream(Draw::Test);
         let mut all = Vec::new();
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn values_that_alone_determine_a_number_have_no_prediction() {
         let (all, organs) = leaves(&[0.0, 2.0, 6.0], 1);
-        // One leaf by itself: without one of its three days any rate meets the other two.
+        // A single leaf: without one of its three days any rate fits the other two.
         let sittings = Sittings::new(&all[..2], &organs[..2]);
         let cancel = CancelToken::new();
         let mut fit = fit_shared(Form::Monomolecular, true, &all[..2], &cancel).unwrap().unwrap();

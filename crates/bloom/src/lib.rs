@@ -11,29 +11,30 @@
 //! | `lattice` | [`Lattice`], [`Weights`]: Bernstein free-form deformation |
 //! | `logistic` | [`fit_logistic`]: K, p0, r with their errors |
 //! | `forms` | [`fit_shared`]: one curve for several series |
-//! | `left_out` | what is left of a day of an organ without it |
+//! | `left_out` | residuals of an organ on a day, predicted without it |
 //! | `choice` | [`choose`]: one law for several series, if they determine one |
-//! | `tails` | how often chance gives as much |
-//! | `clean` | [`clean`]: stray points and the ground go |
+//! | `tails` | tails of the distribution of F |
+//! | `clean` | [`clean`]: removal of stray points and the ground |
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
 //! | `blades` | [`blades`]: one leaf, or several |
 //! | `limb` | [`stem`], [`stalk`]: lines with radii of stems and stalks |
-//! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
+//! | `law` | [`GrowthLaw`]: fitted, saved, applied to another species |
 //! | `pose` | [`settle`]: motion of plant and organs apart from growth |
 //! | `odd` | [`odd_stages`]: scans that are mirrored, lie down, or have another scale |
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
 //! | `coloured` | [`OrganPoints`]: points of a day with their colours |
 //! | `motion` | [`Motion`]: the shape at any day |
-//! | `groups` | [`fit_groups`]: curves of groups of plants, and whether one would do |
-//! | `wanted`, `parts` | [`FlowerSpec`], [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`], [`Cluster`], [`Foliage`]: what can be asked |
+//! | `groups` | [`fit_groups`]: curves of groups of plants, and the test of whether one would do |
+//! | `wanted`, `parts` | [`FlowerSpec`], [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`], [`Cluster`], [`Foliage`]:
+//! settings of a flower |
 //! | `flower`, `species` | whole flowers that open and wilt, day -> `Plant` |
 //! | `whorl`, `petal` | [`Whorl`]: rings of petals, nested within one another |
 //! | `centre` | stamens, pistil, disc and fruit on a day |
-//! | `cluster`, `foliage`, `organs` | where flowers and leaves stand; petals on the ground |
-//! | `overlap` | [`part_overlap`]: do parts pass through one another |
+//! | `cluster`, `foliage`, `organs` | positions of flowers and leaves; petals on the ground |
+//! | `overlap` | [`part_overlap`]: intersections of parts |
 //! | `plot` | [`plot_svg`]: fits with their points |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
-//! | `error` | [`compare`]: distances both ways |
+//! | `error` | [`compare`]: distances in both directions |
 
 mod blades;
 mod centre;

@@ -1,6 +1,6 @@
-//! A stem, or a leaf with its stalk, as points -> a line with radii, and the points of what it bears.
+//! Finds the line and the radii of a stem or a leaf's stalk in points, and the points of the blade beyond it.
 //!
-//! Bands of the way from the base do not depend on how dense the points are, so the line does not, either.
+//! Bands of the path from the base do not depend on the density of the points, so the line does not, either.
 
 use base::Run;
 use geom::KdTree;
@@ -14,45 +14,48 @@ use crate::segment::{ScanOrgan, SegmentSpec, single_organ};
 pub struct Limb {
     /// From the base on, metres; empty for a leaf without a stalk.
     pub line: Vec<DVec3>,
-    /// One a place of the line, above 0.
+    /// One radius per point of the line, above 0.
     pub radii: Vec<f64>,
-    /// Points beyond it: those of the blade.
+    /// Points beyond the line: those of the blade.
     pub beyond: Vec<DVec3>,
 }
 
-/// Bands of equal way that a limb is cut into, at most; and points that a band needs in the mean.
+/// Most bands of equal path length that a limb is cut into.
 const BANDS: usize = 40;
+/// Mean number of points that a band needs.
 const A_BAND: usize = 24;
-/// A blade begins where it is this share of its usual greatest width wide, in three bands one after another.
+/// Width, as a share of the blade's usual greatest width, at which a blade begins.
 const BLADE: f64 = 0.35;
+/// Consecutive bands of that width at which a blade begins.
 const RUN: usize = 3;
-/// No radius is more than so many times the usual one of its limb.
+/// Largest radius, as a multiple of the usual one of its limb.
 const WIDEST: f64 = 1.25;
-/// Rounds in which the line is evened.
+/// Rounds of smoothing of the line.
 const SMOOTH: u32 = 4;
-/// A circle counts if its points lie in so many of twelve sectors, this near to it in radii.
+/// Sectors of twelve that must contain points of a circle.
 const SECTORS: usize = 5;
+/// Distance from the circle within which a point counts, in radii.
 const ROUND: f64 = 0.35;
 
-/// The line of a stem from its lowest place to its farthest.
+/// Finds the line of a stem from its lowest point to its farthest.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points; cancelled.
 pub fn stem(points: &[DVec3], run: &Run<'_>) -> Result<Limb, BloomError> {
     let organ = single_organ(points, "stem", &SegmentSpec::default(), run)?;
-    let bands = Bands::of(&organ);
+    let bands = Bands::from_organ(&organ);
     let (line, radii) = bands.line(0..bands.bands.len());
     Ok(Limb { line, radii, beyond: Vec::new() })
 }
 
-/// The stalk of a leaf that sits on its bearer at `base`: what is thin from there on. The rest is its blade.
+/// Finds the stalk of a leaf that sits on its bearer at `base`: the thin part from there on. The rest is its blade.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points; cancelled.
 pub fn stalk(points: &[DVec3], base: DVec3, run: &Run<'_>) -> Result<Limb, BloomError> {
     let spec = SegmentSpec { foot: Some(base), ..SegmentSpec::default() };
     let organ = single_organ(points, "leaf", &spec, run)?;
-    let bands = Bands::of(&organ);
+    let bands = Bands::from_organ(&organ);
     let widths: Vec<f64> = bands.bands.iter().map(|b| width(b)).collect();
     let mut sorted = widths.clone();
     base::sort_numbers(&mut sorted);
@@ -64,20 +67,20 @@ pub fn stalk(points: &[DVec3], base: DVec3, run: &Run<'_>) -> Result<Limb, Bloom
     Ok(Limb { line, radii, beyond })
 }
 
-/// Points by their way from the base.
+/// Points by their path length from the base.
 struct Bands {
     bands: Vec<Vec<DVec3>>,
 }
 
 impl Bands {
-    fn of(organ: &ScanOrgan) -> Self {
+    fn from_organ(organ: &ScanOrgan) -> Self {
         let count = (organ.points.len() / A_BAND).clamp(4, BANDS);
         let regions = organ.regions(count).into_iter();
         let of = |rows: Vec<usize>| rows.into_iter().map(|i| organ.points[i]).collect::<Vec<DVec3>>();
         Self { bands: regions.map(of).filter(|b| !b.is_empty()).collect() }
     }
 
-    /// Centres and radii of bands, as circles across the line of their means.
+    /// Returns centres and radii of bands, as circles across the line of their means.
     fn line(&self, rows: core::ops::Range<usize>) -> (Vec<DVec3>, Vec<f64>) {
         let bands = &self.bands[rows];
         let means: Vec<DVec3> = bands.iter().map(|b| mean(b)).collect();
@@ -88,7 +91,7 @@ impl Bands {
         let (centres, radii): (Vec<DVec3>, Vec<f64>) = rings.unzip();
         let mut sorted = radii.clone();
         base::sort_numbers(&mut sorted);
-        // Where leaves part, and where a blade begins, a band is wider than its limb.
+        // At forks of leaves, and at the start of a blade, a band is wider than its limb.
         let most = (WIDEST * sorted[sorted.len() / 2]).max(1e-6);
         let median = |k: usize| {
             let mut near = radii[k.saturating_sub(3)..(k + 4).min(radii.len())].to_vec();
@@ -96,7 +99,7 @@ impl Bands {
             near[near.len() / 2].clamp(1e-6, most)
         };
         let even = (0..radii.len()).map(median).collect();
-        // A circle of one band swings more than a stem bends.
+        // A circle of one band varies more than a stem bends.
         let mut line = centres;
         for _ in 0..SMOOTH {
             let old = line.clone();
@@ -112,14 +115,14 @@ fn mean(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len().max(1) as f64
 }
 
-/// How wide a band is, as the standard deviation of its points across their way.
+/// Returns the width of a band, as the standard deviation of its points across their path.
 fn width(band: &[DVec3]) -> f64 {
-    // The longest direction of a band of a blade is across it, that of a band of a stalk may be along it: a band of a stalk
-    // is a short tube, whose three deviations are alike.
+    // The longest direction of a band of a blade is across it, that of a band of a stalk may be along it: a band of a
+    // stalk is a short tube, whose three deviations are alike.
     geom::pca3(band).map_or(0.0, |(_, _, v)| v[0].sqrt())
 }
 
-/// The circle of a band across `axis` (Kasa 1976); where its points do not go round, their mean and their spread.
+/// Fits the circle of a band across `axis` (Kasa 1976); if its points do not surround it, their mean and their spread.
 fn ring(band: &[DVec3], mean: DVec3, axis: DVec3) -> (DVec3, f64) {
     let (x, y) = axis.any_orthonormal_pair();
     let flat: Vec<DVec2> = band.iter().map(|&p| DVec2::new((p - mean).dot(x), (p - mean).dot(y))).collect();
@@ -157,12 +160,12 @@ fn ring(band: &[DVec3], mean: DVec3, axis: DVec3) -> (DVec3, f64) {
     (mean, spread)
 }
 
-/// Places of triangles, at most `step` metres apart: what a surface is compared at.
+/// Returns points of triangles, at most `step` metres apart, at which a surface is compared.
 pub fn surface_places(triangles: impl Iterator<Item = [DVec3; 3]>, step: f64) -> Vec<DVec3> {
     triangles.flat_map(|t| spread(t, step)).collect()
 }
 
-/// Places of a triangle at most `step` apart.
+/// Returns points of a triangle at most `step` apart.
 fn spread([a, b, c]: [DVec3; 3], step: f64) -> Vec<DVec3> {
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before the cast")]
@@ -172,7 +175,7 @@ fn spread([a, b, c]: [DVec3; 3], step: f64) -> Vec<DVec3> {
     (0..=parts).flat_map(|i| (0..=parts - i).map(move |j| at(i, j))).collect()
 }
 
-/// The place of `of` that is nearest to any of `to`: where a leaf sits on its stem.
+/// Returns the point of `of` that is nearest to any of `to`: the joint of a leaf on its stem.
 pub fn joint(of: &[DVec3], to: &[DVec3]) -> Option<DVec3> {
     let tree = KdTree::new(to);
     let gap = |p: &DVec3| Some((tree.nearest(*p, f64::INFINITY).map(|k| to[k].distance(*p))?, *p));
@@ -185,7 +188,7 @@ mod tests {
 
     use super::*;
 
-    /// A stalk of 20 mm, 1 mm thick, and a blade of 40 by 16 mm, `n` points in all.
+    /// Makes a stalk of 20 mm, 1 mm thick, and a blade of 40 by 16 mm, `n` points in all.
     fn leaf(n: usize) -> Vec<DVec3> {
         let mut s = Seed::new(3).stream(Draw::Test);
         let of = |k: usize| {

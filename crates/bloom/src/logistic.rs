@@ -1,12 +1,13 @@
-//! A series of days and values -> the logistic growth law and how far it can be trusted (Huai, Yang and Cai 2019, eq 6).
+//! Fits the logistic growth law to a series of days and values, with its standard errors (Huai, Yang and Cai 2019, eq
+//! 6).
 
 use base::ops;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of `f(x) = offset + K / (1 + (K / p0 - 1) exp(-r x))`: `f(0) = offset + p0`.
 ///
-/// `r > 0` tends to `offset + K`. Both decreasing and increasing series have this form: `p0 > K > 0` decays,
-/// `K < 0` grows downwards. A series that changes its sign needs an `offset`.
+/// `r > 0` tends to `offset + K`. Both decreasing and increasing series have this form: `p0 > K > 0` decays, `K < 0`
+/// grows downwards. A series that changes its sign needs an `offset`.
 ///
 /// ```
 /// let law = bloom::Logistic { k: 10.0, p0: 1.0, r: 0.5, offset: 0.0 };
@@ -28,7 +29,7 @@ pub struct Logistic {
 }
 
 impl Logistic {
-    /// The value at `x` days; the offset alone for K = 0.
+    /// Returns the value at `x` days; the offset alone for K = 0.
     pub fn value(&self, x: f64) -> f64 {
         if self.k.abs() <= 0.0 {
             return self.offset;
@@ -37,14 +38,14 @@ impl Logistic {
     }
 }
 
-/// Largest K/p0, and 1 over the smallest, that a fit looks at.
+/// Largest K/p0, and inverse of the smallest, in the search of a fit.
 const MAX_RATIO: f64 = 1e4;
-/// Largest rate times the span of the days that a fit looks at.
+/// Largest product of the rate and the span of the days in the search of a fit.
 const MAX_TURN: f64 = 60.0;
 
 impl Logistic {
-    /// A fit over `span` days ended on a bound of K/p0 or of the rate: the series determines no logistic, and K, p0
-    /// and r say nothing by themselves.
+    /// Whether a fit over `span` days ended on a bound of K/p0 or of the rate: the series determines no logistic, and
+    /// K, p0 and r mean nothing by themselves.
     pub fn on_bound(&self, span: f64) -> bool {
         let q = (self.k / self.p0).abs();
         // 0.99: the search ends before a bound that it would step over.
@@ -52,12 +53,12 @@ impl Logistic {
     }
 }
 
-/// How the constant under the curve is chosen.
+/// Choice of the constant under the curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Offset {
-    /// 0 unless the series changes its sign or touches 0; then a tenth of its range beyond its first value, so
-    /// that growth starts near 0.
+    /// 0 unless the series changes its sign or touches 0; then a tenth of its range beyond its first value, so that
+    /// growth starts near 0.
     #[default]
     Auto,
     /// Always 0, as in the paper. A series that changes its sign is refused.
@@ -72,13 +73,13 @@ pub struct Fit {
     /// Standard errors of K, p0 and r; `None` without a degree of freedom (3 values), or if the series does not
     /// determine them.
     pub standard_errors: Option<[f64; 3]>,
-    /// Coefficient of determination, 1 - SSE / SST; 1 for a constant series that is met.
+    /// Coefficient of determination, 1 - SSE / SST; 1 for a constant series that is fitted exactly.
     pub r2: f64,
-    /// R2 for the degrees of freedom, 1 - (1 - R2)(n - 1)/(n - 3); `None` for 3 values.
+    /// R2 adjusted for the degrees of freedom, 1 - (1 - R2)(n - 1)/(n - 3); `None` for 3 values.
     pub r2_adjusted: Option<f64>,
-    /// Root of the mean square error of each value predicted from the others; `None` below 4 values.
+    /// Root mean square error of each value predicted from the others; `None` below 4 values.
     pub loo_rmse: Option<f64>,
-    /// Each value less its prediction from the others; empty below 4 values.
+    /// Each value minus its prediction from the others; empty below 4 values.
     pub left_out: Vec<f64>,
     /// Sum of squared residuals.
     pub sse: f64,
@@ -86,37 +87,37 @@ pub struct Fit {
     pub steps: u32,
 }
 
-/// A series that no logistic can be fitted to.
+/// Reason why no logistic can be fitted to a series.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Fewer values than parameters.
+    /// There are fewer values than parameters.
     #[error(
         "{got} {} cannot determine the 3 parameters of a growth law; give at least 3 days",
         if *got == 1 { "stage" } else { "stages" }
     )]
     TooFew {
-        /// Values given.
+        /// Number of values.
         got: usize,
     },
-    /// Columns of unequal length.
+    /// The columns differ in length.
     #[error("{days} days but {values} values; give one value a day")]
     Length {
-        /// Days given.
+        /// Number of days.
         days: usize,
-        /// Values given.
+        /// Number of values.
         values: usize,
     },
-    /// NaN or infinite.
+    /// A value is NaN or infinite.
     #[error("value {index} of the series is not a finite number")]
     NotFinite {
         /// Its index from 0.
         index: usize,
     },
-    /// Two stages at one day, or out of order.
+    /// Two stages share one day, or are out of order.
     #[error("day {day} does not come after day {before}; sort the stages by day, one a day")]
     Order {
-        /// The day that is wrong.
+        /// The misplaced day.
         day: f64,
         /// The one before it.
         before: f64,
@@ -128,10 +129,11 @@ pub enum FitError {
 
 /// Fits K, p0 and r to values at days that increase strictly; at least 3.
 ///
-/// Guaranteed: within K/p0 from 1e-4 to 1e4 and a rate of at most 60 a span a least-squares minimum to 1e-7 standard
-/// errors, the lowest of those reached from nine rates of either sign; the best of each sign is followed. Not guaranteed: that the series determines all three parameters
-/// (see the standard errors). Cost: about 8 microseconds for 25 values with [`fit_law`], n times that here, as
-/// each value is left out once; of more than 100 values `loo_rmse` follows from the leverage of each, in linear time.
+/// Guaranteed: within K/p0 from 1e-4 to 1e4 and a rate of at most 60 per span a least-squares minimum to 1e-7 standard
+/// errors, the lowest of those reached from nine rates of either sign; the best of each sign is followed. Not
+/// guaranteed: that the series determines all three parameters (see the standard errors). Cost: about 8 microseconds
+/// for 25 values with [`fit_law`], n times that here, as each value is left out once; for more than 100 values
+/// `loo_rmse` follows from the leverage of each, in linear time.
 ///
 /// # Errors
 /// [`FitError`].
@@ -147,11 +149,12 @@ pub fn fit_logistic(days: &[f64], values: &[f64], offset: Offset) -> Result<Fit,
     fit_logistic_while(days, values, offset, || Ok(()))
 }
 
-/// Up to so many values each is left out in turn, and the rest fitted anew. Of more, one hardly moves the curve: that it is
-/// moved by its leverage changes the error that is told by less than three thousandths (`long_series_are_left_out_by_leverage`).
+/// Most values of which each is left out in turn, with a refit of the rest. With more, one hardly moves the curve: the
+/// effect by its leverage changes the reported error by less than three thousandths
+/// (`long_series_are_left_out_by_leverage`).
 const LEFT_OUT_IN_TURN: usize = 100;
 
-/// [`fit_logistic`] that asks before each value that it leaves out whether it is still wanted.
+/// As [`fit_logistic`], but checks before each left-out value whether the fit is still wanted.
 pub(crate) fn fit_logistic_while<E: From<FitError>>(
     days: &[f64],
     values: &[f64],
@@ -171,7 +174,7 @@ pub(crate) fn fit_logistic_while<E: From<FitError>>(
             v.clear();
             d.extend((0..n).filter(|&i| i != out).map(|i| days[i]));
             v.extend((0..n).filter(|&i| i != out).map(|i| values[i]));
-            // The constant under the curve, too, is that of the others: nothing of a value is in its prediction.
+            // The constant under the curve, too, is that of the others: a value does not influence its own prediction.
             let constant = constant_under(&v, offset).unwrap_or(fit.law.offset);
             v.iter_mut().for_each(|v| *v -= constant);
             fit.left_out.push(values[out] - constant - fit_core(&d, &v).law.value(days[out]));
@@ -184,10 +187,11 @@ pub(crate) fn fit_logistic_while<E: From<FitError>>(
     Ok(fit)
 }
 
-/// Leave-one-out error by the linearised least squares at the fit: a residual over what is free of it (Allen 1974).
+/// Returns leave-one-out errors by the linearised least squares at the fit: each residual over the remaining share
+/// after its leverage (Allen 1974).
 fn left_out_by_leverage(days: &[f64], values: &[f64], fit: &Fit) -> Vec<f64> {
     let Logistic { k, p0, r, offset } = fit.law;
-    // In the units of the fit, so that the normal matrix is as sound as there.
+    // In the units of the fit, so that the normal matrix is as well conditioned as there.
     let scale_x = days.iter().map(|d| d.abs()).fold(0.0, f64::max).max(1e-300);
     let slopes = |day: f64| {
         let e = ops::exp(-r * day);
@@ -207,7 +211,7 @@ fn left_out_by_leverage(days: &[f64], values: &[f64], fit: &Fit) -> Vec<f64> {
     let inverse = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| solve3(normal, unit));
     let errors = days.iter().zip(values).zip(&rows).map(|((&day, value), d)| {
         let error = value - offset - Logistic { offset: 0.0, ..fit.law }.value(day);
-        // Where the days do not determine all three, none is moved.
+        // If the days do not determine all three, no value has a leverage.
         let leverage = match inverse {
             [Some(a), Some(b), Some(c)] => {
                 (0..3).map(|i| d[i] * (a[i] * d[0] + b[i] * d[1] + c[i] * d[2])).sum::<f64>()
@@ -220,7 +224,7 @@ fn left_out_by_leverage(days: &[f64], values: &[f64], fit: &Fit) -> Vec<f64> {
     errors.collect()
 }
 
-/// [`fit_logistic`] without leaving any value out: `loo_rmse` stays `None`.
+/// As [`fit_logistic`], without leaving any value out: `loo_rmse` stays `None`.
 ///
 /// # Errors
 /// [`FitError`].
@@ -245,7 +249,7 @@ pub fn fit_law(days: &[f64], values: &[f64], offset: Offset) -> Result<Fit, FitE
     Ok(fit)
 }
 
-/// The constant under the curve of a series.
+/// Returns the constant under the curve of a series.
 fn constant_under(values: &[f64], offset: Offset) -> Result<f64, FitError> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -266,7 +270,7 @@ struct Scaled {
     x: Vec<f64>,
     y: Vec<f64>,
     sst: f64,
-    /// `exp(-r x)` of the rate that was looked at last.
+    /// `exp(-r x)` at the latest rate.
     e: Vec<f64>,
 }
 
@@ -279,12 +283,12 @@ struct State {
 }
 
 impl Scaled {
-    /// The sum of squares at `p = [K, p0, r]`, or `None` where the curve has a pole in or between the days.
+    /// Returns the sum of squares at `p = [K, p0, r]`, or `None` if the curve has a pole at or between the days.
     fn state(&mut self, p: [f64; 3]) -> Option<State> {
         let [k, p0, r] = p;
         let q = k / p0;
         // Beyond these bounds a curve is a step or a straight exponential: a series whose best fit lies there
-        // determines no logistic, and its parameters would run away.
+        // determines no logistic, and its parameters would diverge.
         let last = self.x.len() - 1;
         let span = self.x[last] - self.x[0];
         if !((1.0 / MAX_RATIO..=MAX_RATIO).contains(&q) && (r * span).abs() <= MAX_TURN) {
@@ -324,8 +328,8 @@ impl Scaled {
         s.sse.is_finite().then_some(s)
     }
 
-    /// The best K and p0 for a rate, from `1/y = a + b exp(-r x)`, linear in a and b; errors of `1/y` are those
-    /// of y over y squared. Also its sum of squares.
+    /// Returns the best K and p0 for a rate, from `1/y = a + b exp(-r x)`, linear in a and b; errors of `1/y` are those
+    /// of y over y squared. Also returns its sum of squares.
     fn start(&mut self, r: f64) -> Option<([f64; 3], f64)> {
         let (mut ww, mut we, mut wee, mut wy, mut wey) = (0.0, 0.0, 0.0, 0.0, 0.0);
         ops::exps(-r, &self.x, &mut self.e);
@@ -358,7 +362,8 @@ impl Scaled {
         Some((p, sse.sum()))
     }
 
-    /// Levenberg 1944, Marquardt 1963, with the diagonal as scale. `rival` is the sum of squares of another valley.
+    /// Descends by Levenberg 1944 and Marquardt 1963, scaled by the diagonal. `rival` is the sum of squares of another
+    /// valley.
     fn descend(&mut self, p: [f64; 3], steps: &mut u32, rival: f64) -> Option<State> {
         let mut now = self.state(p)?;
         let mut lambda = 1e-3;
@@ -376,8 +381,8 @@ impl Scaled {
                 Some((self.state([0, 1, 2].map(|i| now.p[i] + step[i]))?, size, promise))
             });
             match next {
-                // The last step: 1e-7 standard errors, of which it leaves a part. Whether the sum of squares falls is
-                // rounding. Not where a large lambda made it small.
+                // The last step: 1e-7 standard errors, of which a part remains. Whether the sum of squares falls is
+                // rounding. Not if a large lambda made it small.
                 Some((next, _, promise))
                     if lambda <= 1e-2
                         && promise <= 1e-15 * now.sse
@@ -390,7 +395,7 @@ impl Scaled {
                     let gain = now.sse - next.sse;
                     now = next;
                     lambda = (lambda * 0.1).max(1e-15);
-                    // Twice, as the first small step may owe its size to a large lambda.
+                    // Twice, as the first small step may be due to a large lambda.
                     quiet = if size < 1e-10 || gain <= 1e-16 * now.sse { quiet + 1 } else { 0 };
                     if quiet >= 2 || now.sse <= 1e-30 * self.sst {
                         break;
@@ -398,12 +403,12 @@ impl Scaled {
                 }
                 _ => lambda *= 10.0,
             }
-            // The exact minimum can be missed by rounding for ever.
+            // Rounding can miss the exact minimum for ever.
             if lambda > 1e12 {
                 break;
             }
-            // A valley that would not come below the other one in PACE times the last four steps is left, and any that
-            // is still above after 26.
+            // The search leaves a valley that would not fall below the other one in PACE times the last four steps, and
+            // any that is still above after 26.
             if round % 4 == 0 {
                 if now.sse > rival && (now.sse - rival > PACE * (earlier - now.sse) || round > 25) {
                     break;
@@ -415,10 +420,11 @@ impl Scaled {
     }
 }
 
-/// A start this many times above the valley that was found is not followed.
+/// Largest ratio of a start to the best valley found: others are not followed.
 const HOPELESS: f64 = 300.0;
 
-/// Of 60,000 made series of six shapes 2 more than with 100 end in the higher valley.
+/// Factor on the latest gain of a valley: 2 more of 60,000 synthetic series of six shapes than with 100 end in the
+/// higher valley.
 const PACE: f64 = 30.0;
 
 fn fit_core(days: &[f64], values: &[f64]) -> Fit {
@@ -450,14 +456,13 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
         e: vec![0.0; n],
     };
     let span = scaled.x[n - 1] - scaled.x[0];
-    // Rates per span: from a nearly straight line to a step within the series; a negative rate decays to 0
-    // along an S.
+    // Rates per span: from a nearly straight line to a step within the series; a negative rate decays to 0 along an S.
     let rates = [0.3, 1.5, 4.0, 10.0, 30.0, -0.7, -2.0, -5.0, -12.0].map(|r| r / span);
     let mut starts: Vec<_> = rates.iter().filter_map(|&r| scaled.start(r)).collect();
     base::sort_by(&mut starts, |a, b| a.1.total_cmp(&b.1));
     let flat = mean / scale_y;
     starts.push(([flat * 1.05, flat * 0.95, 1.0 / span], scaled.sst));
-    // The best start, and the best of the other sign: growth and decay are valleys of their own.
+    // The best start, and the best of the opposite sign: growth and decay are separate valleys.
     let first = starts[0].0[2];
     if let Some(other) = starts.iter().position(|(p, _)| p[2] * first < 0.0) {
         let other = starts.remove(other);
@@ -513,8 +518,8 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
     }
 }
 
-/// Cramer's rule after scaling rows and columns to a unit diagonal; not [`geom::solve_positive`], which rounds otherwise,
-/// and laws are compared to the last bit.
+/// Solves by Cramer's rule after scaling rows and columns to a unit diagonal; [`geom::solve_positive`] rounds
+/// differently, and laws are compared to the last bit.
 fn solve3(a: [[f64; 3]; 3], b: [f64; 3]) -> Option<[f64; 3]> {
     let s = [0, 1, 2].map(|i| 1.0 / a[i][i].sqrt());
     if !s.iter().all(|s| s.is_finite()) {
@@ -535,7 +540,7 @@ fn solve3(a: [[f64; 3]; 3], b: [f64; 3]) -> Option<[f64; 3]> {
     out.iter().all(|x| x.is_finite()).then_some(out)
 }
 
-/// The diagonal of the inverse of a normal matrix.
+/// Returns the diagonal of the inverse of a normal matrix.
 fn covariance(a: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     let mut out = [0.0; 3];
     for i in 0..3 {
@@ -550,14 +555,15 @@ fn covariance(a: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
 mod tests {
     use super::*;
 
-    /// What [`LEFT_OUT_IN_TURN`] says of longer series: told by leverage, the error is that of leaving each out in turn.
+    /// The claim of [`LEFT_OUT_IN_TURN`] about longer series: the error by leverage is that of leaving each value out
+    /// in turn.
     #[test]
     fn long_series_are_left_out_by_leverage() {
         let truth = Logistic { k: 0.1, p0: 0.012, r: 0.05, offset: 0.0 };
         for (n, noise, least) in [(101, 0.001, 0.001), (101, 0.01, 0.01), (400, 0.003, 0.003)] {
             let mut s = base::Seed::new(n).stream(base::Draw::Test);
             let days: Vec<f64> = (0..n).map(|i| 200.0 * i as f64 / n as f64).collect();
-            // Of variance 1.
+            // Noise with variance 1.
             let mut z = || (0..4).map(|_| s.range(-0.5, 0.5)).sum::<f64>() * 3.0_f64.sqrt();
             let values: Vec<f64> = days.iter().map(|&d| truth.value(d) + noise * z()).collect();
             let fit = fit_logistic(&days, &values, Offset::Auto).expect("fits");

@@ -1,4 +1,4 @@
-//! Two or more shapes and a law -> the shape at any day.
+//! The shape on any day from two or more shapes and a law.
 
 use base::Run;
 use glam::DVec3;
@@ -10,38 +10,38 @@ use crate::{
     match_organs,
 };
 
-/// How the motion between two shapes is computed.
+/// Settings of the motion between two shapes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionSpec {
     /// Registration and lattice.
     pub register: RegisterSpec,
-    /// Control points move on straight lines, as in Huai, Yang and Cai (2019), Algorithm 2, instead of turning with
-    /// their organ. Default false: an organ that swings by 40 degrees would shrink by 6 % half way.
+    /// Whether control points move on straight lines, as in Huai, Yang and Cai (2019), Algorithm 2, instead of turning
+    /// with their organ. Default false: an organ that swings by 40 degrees would shrink by 6 % half way.
     pub straight: bool,
 }
 
-/// One organ on its way from one stage to the next.
+/// One organ between two consecutive stages.
 #[derive(Clone, Debug)]
 struct Segment {
-    /// Days since the first stage.
+    /// Start, days since the first stage.
     from: f64,
     to: f64,
     weights: Weights,
     fit: Registration,
-    /// Place of each control point along the organ, 0 to 1.
+    /// Position of each control point along the organ, 0 to 1.
     along: Vec<f64>,
-    /// Colours of the points at the beginning and, as those nearest to where they get have them, at the end.
+    /// Colours of the points at the beginning and, from the nearest points of the later scan, at the end.
     colors: [Vec<[u8; 3]>; 2],
 }
 
-/// An organ that is new at a stage grows out of its base over the time before.
+/// Growth of an organ that is new at a stage, out of its base over the time before.
 #[derive(Clone, Debug)]
 struct Birth {
     from: f64,
     to: f64,
     base: DVec3,
     points: Vec<DVec3>,
-    /// The row of an older organ nearest to the base: it carries the base along, at this distance at birth.
+    /// Row of an older organ nearest to the base: it carries the base along, at this distance at birth.
     bearer: Option<usize>,
     gap: DVec3,
     colors: Vec<[u8; 3]>,
@@ -54,7 +54,7 @@ struct Track {
     /// Rows of the result that belong to the organ.
     rows: core::ops::Range<usize>,
     segments: Vec<Segment>,
-    /// How the organ is there before its first segment.
+    /// State of the organ before its first segment.
     born: Option<Birth>,
 }
 
@@ -70,14 +70,14 @@ pub struct Motion {
     spec: MotionSpec,
     /// Name of the organ of each row, by range.
     pub organs: Vec<(String, core::ops::Range<usize>)>,
-    /// What each registration left: organ, day from, day to, residual.
+    /// Residual of each registration: organ, day from, day to, residual.
     pub residuals: Vec<(String, f64, f64, crate::ShapeError)>,
 }
 
-/// Brings the organs of a day under the names that they have on the days before, in order of days.
+/// Gives the organs of a day the names that they have on the days before, in order of days.
 ///
-/// Organs are found among those of the day before. What has no partner is `new-` with its own name, or with the next number that no
-/// organ had on any day before, as one name is one organ on all days.
+/// Organs are matched with those of the day before. An organ without a partner is `new-` with its own name, or with the
+/// next number that no organ had on any day before, as one name is one organ on all days.
 pub fn name_alike(before: &[Stage], now: &mut [ScanOrgan], up: DVec3) {
     let Some(last) = before.last().map(|s| s.organs.as_slice()) else { return };
     let pairs = match_organs(last, now, up);
@@ -91,7 +91,7 @@ pub fn name_alike(before: &[Stage], now: &mut [ScanOrgan], up: DVec3) {
     }
 }
 
-/// `new-NAME`, with another number where that is taken.
+/// Returns `new-NAME`, with another number if that is taken.
 fn unused(name: &str, taken: &[String]) -> String {
     let kind = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let own = core::iter::once(format!("new-{name}"));
@@ -101,8 +101,8 @@ fn unused(name: &str, taken: &[String]) -> String {
 }
 
 impl Motion {
-    /// Registers each organ from stage to stage. Organs are the same if they have the same name. `stages` need not
-    /// be those of the law; their days count from the first.
+    /// Registers each organ from stage to stage. Organs are the same if they have the same name. `stages` need not be
+    /// those of the law; their days count from the first.
     ///
     /// # Errors
     /// [`BloomError::TooFew`] below 2 stages or 8 points of an organ, [`BloomError::Cancelled`].
@@ -115,7 +115,7 @@ impl Motion {
         Self::since(0.0, stages, law, spec, run)
     }
 
-    /// [`new`](Self::new) for stages of which the first is at day `start` of the law. Two stages may run backwards.
+    /// As [`new`](Self::new), for stages of which the first is at day `start` of the law. Two stages may run backwards.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -177,7 +177,7 @@ impl Motion {
         }
         let mut born = None;
         if begin > 0 {
-            let older = self.at(day(begin), run)?;
+            let older = self.points_on_day(day(begin), run)?;
             let gap = |i: &usize| older[*i].distance_squared(organ.base);
             let bearer = (0..start).min_by(|a, b| gap(a).total_cmp(&gap(b)));
             let (from, to) = (day(begin - 1), day(begin));
@@ -185,7 +185,7 @@ impl Motion {
             let (points, colors) = (organ.points.clone(), organ.colors.clone());
             born = Some(Birth { from, to, base: organ.base, points, bearer, gap, colors });
         } else if segments.is_empty() {
-            // Nothing is known of it later: it stays.
+            // Its later state is unknown: it stays.
             let always = f64::NEG_INFINITY;
             let points = organ.points.clone();
             born = Some(Birth {
@@ -204,19 +204,19 @@ impl Motion {
         Ok(())
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.points
     }
 
-    /// There is no point.
+    /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.points == 0
     }
 
-    /// The colours of the points of each organ at `day` since the first stage, in the order of [`organs`](Self::organs): between
-    /// two stages a mean of both, by the time; before the first and after the last those of the nearest. Empty for an organ
-    /// whose stages have none.
+    /// Returns the colours of the points of each organ at `day` since the first stage, in the order of
+    /// [`organs`](Self::organs): between two stages a mean of both, weighted by time; before the first and after the
+    /// last those of the nearest. Empty for an organ whose stages have none.
     pub fn colors(&self, day: f64) -> Vec<Vec<[u8; 3]>> {
         let of = |track: &Track| {
             let first_from = track.segments.first().map_or(f64::INFINITY, |s| s.from);
@@ -232,12 +232,12 @@ impl Motion {
         self.tracks.iter().map(of).collect()
     }
 
-    /// All points at `day` since the first stage: the organs of the first stage in order, then those that came
-    /// later. Days outside the stages continue the law at most half as far again.
+    /// Returns all points at `day` since the first stage: the organs of the first stage in order, then those that
+    /// appeared later. Days outside the stages continue the law by at most half.
     ///
     /// # Errors
     /// [`BloomError::Cancelled`].
-    pub fn at(&self, day: f64, run: &Run<'_>) -> Result<Vec<DVec3>, BloomError> {
+    pub fn points_on_day(&self, day: f64, run: &Run<'_>) -> Result<Vec<DVec3>, BloomError> {
         let mut out = vec![DVec3::ZERO; self.points];
         for track in &self.tracks {
             let first_from = track.segments.first().map_or(f64::INFINITY, |s| s.from);
@@ -258,7 +258,7 @@ impl Motion {
                             .clamp(0.02, 1.0)
                     };
                     let place = match b.bearer {
-                        // What parts the base from its bearer at birth closes towards the beginning.
+                        // The gap between the base and its bearer at birth closes towards the beginning.
                         Some(row) if day < b.to => out[row] + b.gap * size,
                         _ => b.base,
                     };
@@ -280,10 +280,10 @@ impl Motion {
     }
 }
 
-/// Place of each control point along the organ: mean way of the points near it, by its coordinate on the box's
-/// axis that runs along the organ.
+/// Returns the position of each control point along the organ: mean path length of the points near it, by its
+/// coordinate on the box's axis along the organ.
 fn places(fit: &Registration, points: &[DVec3], way: &[f64]) -> Vec<f64> {
-    // The axis whose coordinate goes best with the way.
+    // The axis whose coordinate correlates best with the path length.
     let local: Vec<DVec3> = points.iter().map(|p| fit.obb.local(*p)).collect();
     let n = local.len().max(1) as f64;
     let mean_way = way.iter().sum::<f64>() / n;
@@ -309,7 +309,7 @@ impl Segment {
         let [from, to, day] = [self.from, self.to, day].map(|d| d + motion.start);
         let (first, last) = (&self.fit.first.points, &self.fit.last.points);
         let g = |axis, along: f64| law.progress(organ, axis, along, from, to, day);
-        // The way is the same for many control points: one answer a place.
+        // Many control points share a position: it is computed once.
         let mut known: Vec<(f64, DVec3)> = Vec::new();
         let mut pace = |along: f64| {
             if let Some((_, v)) = known.iter().find(|(a, _)| (a - along).abs() < 1e-9) {
@@ -349,7 +349,7 @@ mod tests {
     use crate::{SegmentSpec, compare, single_organ};
     use base::{Draw, Seed, ops};
 
-    /// A petal that opens: longer and bent outwards by the share `g`.
+    /// Makes a petal that opens: longer and bent outwards by the share `g`.
     fn petal(g: f64, seed: u64, n: usize) -> Vec<DVec3> {
         let mut s = Seed::new(seed).stream(Draw::Test);
         let length = 0.04 + 0.02 * g;
@@ -381,11 +381,11 @@ mod tests {
         let run = Run::plain();
         let ends = [stages[0].clone(), stages[4].clone()];
         let motion = Motion::new(&ends, law, MotionSpec::default(), &run).unwrap();
-        let start = motion.at(0.0, &run).unwrap();
+        let start = motion.points_on_day(0.0, &run).unwrap();
         assert!(start.iter().zip(&stages[0].organs[0].points).all(|(a, b)| a.distance(*b) < 1e-9), "day 0");
         for (day, limit) in [(1.5, 0.0011), (3.0, 0.0013), (4.5, 0.0013), (6.0, 0.0011)] {
             let measured = petal(share(day), 77, 2500);
-            let e = compare(&measured, &motion.at(day, &run).unwrap(), &run).unwrap();
+            let e = compare(&measured, &motion.points_on_day(day, &run).unwrap(), &run).unwrap();
             assert!(e.to_model.mean < limit && e.to_scan.mean < limit, "day {day}: {e:?}");
         }
     }
@@ -401,15 +401,15 @@ mod tests {
         let motion = Motion::new(&[a, b], law, MotionSpec::default(), &run).unwrap();
         assert_eq!(motion.organs.len(), 2);
         let reach = |day: f64| {
-            let p = motion.at(day, &run).unwrap();
+            let p = motion.points_on_day(day, &run).unwrap();
             p[motion.organs[1].1.clone()].iter().map(|p| p.distance(new.base)).fold(0.0, f64::max)
         };
         assert!(reach(0.0) < 0.003 && reach(0.0) < reach(1.0) && reach(1.0) < reach(2.0), "it grows");
-        let end = motion.at(2.0, &run).unwrap();
+        let end = motion.points_on_day(2.0, &run).unwrap();
         assert!(end[motion.organs[1].1.clone()].iter().zip(&new.points).all(|(a, b)| a.distance(*b) < 1e-12));
     }
 
-    /// An organ that comes on a third day must not get the name of another that came on the second.
+    /// An organ that appears on a third day must not get the name of another that appeared on the second.
     #[test]
     fn one_name_is_one_organ_on_all_days() {
         let at = |name: &str, tip: DVec3| ScanOrgan {
@@ -428,7 +428,7 @@ mod tests {
         name_alike(&[first.clone(), second.clone()], &mut third, DVec3::Y);
         let names: Vec<&str> = third.iter().map(|o| o.name.as_str()).collect();
         assert_eq!(names, ["stem", "new-leaf-2", "leaf-1", "new-leaf-1"]);
-        // Nor that of an organ that went before.
+        // Nor that of an organ that vanished before.
         let mut fourth = vec![stem(), at("leaf-1", DVec3::X), at("leaf-2", DVec3::NEG_Z * 9.0)];
         name_alike(&[second, first], &mut fourth, DVec3::Y);
         assert_eq!((fourth[1].name.as_str(), fourth[2].name.as_str()), ("leaf-1", "new-leaf-1"));

@@ -1,4 +1,4 @@
-//! Points -> the oriented box that a lattice is laid into.
+//! The oriented box of points, in which a lattice is placed.
 
 use glam::DVec3;
 
@@ -21,18 +21,18 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// Principal axes of the finite points and the box around them (Huai, Yang and Cai 2019, algorithm 1).
+    /// Fits principal axes of the finite points and the box around them (Huai, Yang and Cai 2019, algorithm 1).
     ///
-    /// `floor`: the least edge as a share of the longest, 0 to 1; a flat petal with 0 thickness would have no
-    /// third coordinate. The paper gives none; 0.05 suits petals. Each edge is padded by 1e-6 of itself so
-    /// that s, t and u stay inside \[0, 1\]. `None` without a finite point. Cost: linear.
+    /// `floor`: the least edge as a share of the longest, 0 to 1; a flat petal with 0 thickness would have no third
+    /// coordinate. The paper gives none; 0.05 suits petals. Each edge is padded by 1e-6 of itself so that s, t and u
+    /// stay inside \[0, 1\]. `None` without a finite point. Cost: linear.
     pub fn fit(points: &[DVec3], floor: f64) -> Option<Self> {
         let (_, [major, middle, _], _) = geom::pca3(points)?;
         let (major, middle) = (towards_positive(major), towards_positive(middle));
         Some(Self::along(points, [major, middle, major.cross(middle)], floor))
     }
 
-    /// The box around the finite points along given right-handed orthonormal axes.
+    /// Makes the box around the finite points along given right-handed orthonormal axes.
     pub fn along(points: &[DVec3], axes: [DVec3; 3], floor: f64) -> Self {
         let usable = || points.iter().copied().filter(|p| p.is_finite());
         let origin = usable().next().unwrap_or(DVec3::ZERO);
@@ -55,7 +55,7 @@ impl Obb {
         Self { corner, axes, size }
     }
 
-    /// A point's coordinates (s, t, u); inside the box each is in \[0, 1\] (Sederberg and Parry, eq 1).
+    /// Returns a point's coordinates (s, t, u); inside the box each is in \[0, 1\] (Sederberg and Parry, eq 1).
     pub fn local(&self, p: DVec3) -> DVec3 {
         let d = p - self.corner;
         DVec3::new(
@@ -65,7 +65,7 @@ impl Obb {
         )
     }
 
-    /// The point with coordinates (s, t, u).
+    /// Returns the point with coordinates (s, t, u).
     pub fn world(&self, stu: DVec3) -> DVec3 {
         self.corner
             + self.axes[0] * (stu.x * self.size[0])
@@ -73,7 +73,7 @@ impl Obb {
             + self.axes[2] * (stu.z * self.size[2])
     }
 
-    /// The middle of the box.
+    /// Returns the centre of the box.
     pub fn centre(&self) -> DVec3 {
         self.world(DVec3::splat(0.5))
     }

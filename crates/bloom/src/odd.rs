@@ -1,4 +1,4 @@
-//! Scans of several days: is one of them mirrored, lying down, or another at a different scale?
+//! Finds scans of several days that are mirrored, lie down, or have a different scale.
 
 use base::Run;
 use glam::{DQuat, DVec3};
@@ -7,58 +7,59 @@ use crate::thin::thin;
 use crate::trial::Pair;
 use crate::{BloomError, RigidMotion, Stage};
 
-/// What seems to be wrong with a scan.
+/// Suspected fault of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Oddity {
-    /// It meets its neighbour when one of its axes is negated.
+    /// It matches its neighbour if one of its axes is negated.
     Mirrored,
-    /// It meets its neighbour when this axis of it points up.
+    /// It matches its neighbour if this axis of it points up.
     Turned(DVec3),
-    /// It is its neighbour so many times as large, and else the same: no plant grows so.
+    /// It matches its neighbour at this size ratio, which no growth explains.
     Scaled(f64),
 }
 
-/// A scan that does not go with the one beside it.
+/// A scan that does not match its neighbour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OddStage {
-    /// Its row.
+    /// Row of the scan.
     pub stage: usize,
-    /// The row of the scan that it was compared with.
+    /// Row of the scan that it was compared with.
     pub beside: usize,
-    /// What seems to be wrong.
+    /// Suspected fault.
     pub oddity: Oddity,
-    /// A third scan says which of the two it is; else it may be either.
+    /// Whether a third scan identifies the faulty one of the two; otherwise it may be either.
     pub sure: bool,
-    /// Distance of the two as they are, after the best move, as a share of their size.
+    /// Distance of the two scans after the best move, as a share of their size.
     pub as_it_is: f64,
-    /// The same with the fault mended.
+    /// The same with the fault corrected.
     pub mended: f64,
 }
 
-/// Points of each scan that take part in the search, and in the last measurement.
+/// Points of each scan in the search, and in the last measurement.
 const SAMPLES: [usize; 2] = [200, 1200];
-/// Rounds of nearest points in both.
+/// Rounds of iterated nearest points in both.
 const ROUNDS: [usize; 2] = [15, 40];
-/// A fault is told if the two are nearer by this factor without it.
+/// Largest ratio of the distance without a fault to that with it at which the fault is reported.
 const NEARER: f64 = 0.6;
-/// A third scan decides between two if one of them would be nearer to it by so much more than the other.
+/// Ratio of distances to a third scan at which it decides between two.
 const DECIDED: f64 = 1.25;
-/// Growth to a copy of this many times the size, or more, is none.
+/// Size ratio from which a copy is not explained by growth.
 const GREW: f64 = 1.35;
-/// Two samples of one shape are this many times as far apart as two halves of one, at most.
+/// Largest ratio of the distance of two samples of one shape to that of its two halves.
 const SAME: f64 = 1.35;
-/// Turns about the vertical that a search starts from.
+/// Rotations about the vertical from which a search starts.
 const STARTS: u32 = 9;
 
-/// Finds scans whose axes or scale are not those of the others, by the best moves of each scan onto the next as it is, mirrored
-/// and with another axis up.
+/// Finds scans whose axes or scale differ from those of the others, by the best moves of each scan onto the next as it
+/// is, mirrored and with another axis up.
 ///
-/// Plants that are their own mirror image, or lie as they stand, tell nothing. Cost: some tenths of a second a scan.
+/// Plants that are their own mirror image, or look the same lying down, give no evidence. Cost: some tenths of a second
+/// per scan.
 ///
 /// # Errors
 /// [`BloomError::Cancelled`].
 pub fn odd_stages(stages: &[Stage], run: &Run<'_>) -> Result<Vec<OddStage>, BloomError> {
-    let clouds: Vec<Option<Cloud>> = stages.iter().map(Cloud::of).collect();
+    let clouds: Vec<Option<Cloud>> = stages.iter().map(Cloud::from_stage).collect();
     let mut steps = Vec::new();
     for (k, pair) in clouds.windows(2).enumerate() {
         let [Some(a), Some(b)] = pair else { continue };
@@ -66,7 +67,7 @@ pub fn odd_stages(stages: &[Stage], run: &Run<'_>) -> Result<Vec<OddStage>, Bloo
             steps.push(OddStage { stage: k + 1, beside: k, oddity, sure: false, as_it_is, mended });
         }
     }
-    // A scan that goes with neither of its neighbours is odd itself.
+    // A scan that matches neither of its neighbours is odd itself.
     let mut out: Vec<OddStage> = Vec::new();
     for step in steps {
         match out.last_mut() {
@@ -77,7 +78,7 @@ pub fn odd_stages(stages: &[Stage], run: &Run<'_>) -> Result<Vec<OddStage>, Bloo
     if let [only] = &mut out[..]
         && !only.sure
     {
-        // Whichever of the two goes less well with a third one.
+        // The one of the two that matches a third one less well.
         let third = if only.beside > 0 { only.beside - 1 } else { only.stage + 1 };
         if let (Some(before), Some(after), Some(Some(third))) =
             (&clouds[only.beside], &clouds[only.stage], clouds.get(third))
@@ -97,7 +98,7 @@ pub fn odd_stages(stages: &[Stage], run: &Run<'_>) -> Result<Vec<OddStage>, Bloo
 }
 
 impl Oddity {
-    /// The next step takes this one back.
+    /// Whether the next step reverses this one.
     fn undone(&self, next: &Self) -> bool {
         match (self, next) {
             (Self::Mirrored, Self::Mirrored) | (Self::Turned(_), Self::Turned(_)) => true,
@@ -107,7 +108,7 @@ impl Oddity {
     }
 }
 
-/// A scan brought to size 1 about its middle.
+/// A scan scaled to size 1 about its centre.
 struct Cloud {
     few: Vec<DVec3>,
     many: Vec<DVec3>,
@@ -115,7 +116,7 @@ struct Cloud {
 }
 
 impl Cloud {
-    fn of(stage: &Stage) -> Option<Self> {
+    fn from_stage(stage: &Stage) -> Option<Self> {
         let all: Vec<DVec3> = stage.organs.iter().flat_map(|o| o.points.iter().copied()).collect();
         let even: Vec<DVec3> = thin(&all, SAMPLES[1]).into_iter().map(|i| all[i as usize]).collect();
         if even.len() < 50 {
@@ -138,16 +139,17 @@ impl Cloud {
     }
 }
 
-/// A turn that leaves the vertical nearer to itself than this is one of a plant that stands: 45 degrees.
+/// Least cosine between the vertical before and after a rotation at which the plant still stands: 45 degrees.
 const STANDS: f64 = 0.707;
 
-/// Distance after the best move of `a` onto `b` that leaves it standing, and after the best other one with its turn.
+/// Distance after the best move of `a` onto `b` that leaves it standing, and after the best other one with its
+/// rotation.
 struct Moves {
     standing: f64,
     other: (f64, DQuat),
 }
 
-/// The best moves from starts with each of `ups` pointing up. Moves may fall over on their way: where they end counts.
+/// Finds the best moves from starts with each of `ups` pointing up. Moves may fall over on their way: their end counts.
 fn best(a: &Cloud, b: &Cloud, ups: &[DVec3], run: &Run<'_>) -> Result<Moves, BloomError> {
     let few = Pair::new(&a.few, &b.few, SAMPLES[0]);
     let starts: Vec<RigidMotion> = ups
@@ -183,7 +185,7 @@ fn best(a: &Cloud, b: &Cloud, ups: &[DVec3], run: &Run<'_>) -> Result<Moves, Blo
     Ok(out)
 }
 
-/// How much nearer two scans are if one of them is mended of such a fault.
+/// Returns the ratio of the distances of two scans with and without the correction of a fault.
 fn misfit(a: &Cloud, b: &Cloud, fault: &Oddity, run: &Run<'_>) -> Result<f64, BloomError> {
     let moves = best(a, b, &UPS, run)?;
     Ok(match fault {
@@ -196,10 +198,10 @@ fn misfit(a: &Cloud, b: &Cloud, fault: &Oddity, run: &Run<'_>) -> Result<f64, Bl
 /// The vertical, then the other axes.
 const UPS: [DVec3; 6] = [DVec3::Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X, DVec3::NEG_Y];
 
-/// What is odd about `b` beside `a`, and their distances as they are and mended.
+/// Returns the fault of `b` relative to `a`, and their distances as they are and corrected.
 fn compare_two(a: &Cloud, b: &Cloud, run: &Run<'_>) -> Result<Option<(Oddity, f64, f64)>, BloomError> {
     let Moves { standing, other: (lying, turn) } = best(a, b, &UPS, run)?;
-    // How far apart two samples of one shape are.
+    // Distance between two samples of one shape.
     let halves: [Vec<DVec3>; 2] = [0, 1].map(|k| b.many.iter().copied().skip(k).step_by(2).collect());
     let [one, other] = &halves;
     let floor = 0.5 * Pair::new(one, other, SAMPLES[1]).gap(&RigidMotion::REST);
@@ -209,7 +211,7 @@ fn compare_two(a: &Cloud, b: &Cloud, run: &Run<'_>) -> Result<Option<(Oddity, f6
         return Ok(odd.then_some((Oddity::Scaled(scale), standing, standing)));
     }
     if lying < NEARER * standing {
-        // Where the vertical of the one before is in this one.
+        // Direction in this scan of the vertical of the one before.
         let up = turn * DVec3::Y;
         let level = up.abs().max_element();
         let axis = up.to_array().map(|c| if c.abs() < level { 0.0 } else { c.signum() });
@@ -226,7 +228,7 @@ mod tests {
     use crate::ScanOrgan;
     use base::{Draw, Seed, ops};
 
-    /// A seedling with three unlike leaves, `grown` and with every leaf lifted by `lift`.
+    /// Makes a seedling with three unlike leaves, `grown` and with every leaf lifted by `lift`.
     fn plant(grown: f64, lift: f64, seed: u64) -> Vec<DVec3> {
         let mut s = Seed::new(seed).stream(Draw::Test);
         let mut out: Vec<DVec3> = (0..600)

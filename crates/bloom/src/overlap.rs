@@ -1,4 +1,4 @@
-//! Do parts of a flower pass through one another? Triangles of different parts that cross.
+//! Finds intersections of parts of a flower: triangles of different parts that cross.
 
 use base::ops;
 use glam::DVec3;
@@ -9,22 +9,22 @@ use plant::{FlowerId, OrganKind, Plant, Shape};
 pub struct PartTriangle {
     /// The part. Stem, stalks and receptacle are one, 0; so are a stamen and its anther, and the disc of a head.
     pub part: u32,
-    /// The organ that it is of; none of a stem.
+    /// Kind of its organ; `None` for a stem.
     pub kind: Option<OrganKind>,
-    /// It is the foot of its part: there it grows out of the stem.
+    /// Whether it is the foot of its part, which grows out of the stem.
     pub foot: bool,
     /// Its corners, metres.
     pub corners: [DVec3; 3],
 }
 
-/// The part that stem, stalks and receptacles are.
+/// The part of stem, stalks and receptacles.
 const STEM: u32 = 0;
-/// Sides of a strand or stem as it is measured.
+/// Sides of a strand or stem in the measurement.
 const SIDES: u32 = 6;
 
-/// Share of triangles that cross a triangle of another group, 0 to 1; each comes with its group, the petal.
+/// Returns the share of triangles that cross a triangle of another group, 0 to 1; each comes with its group, the petal.
 ///
-/// Touching within 1e-12 of the box's size is no crossing. Cost: about n log n for petals of like fineness.
+/// Touching within 1e-12 of the box's size does not count. Cost: about n log n for petals of similar resolution.
 ///
 /// ```
 /// use glam::DVec3;
@@ -46,7 +46,7 @@ fn share(crossed: &[Option<usize>]) -> f64 {
     crossed.iter().flatten().count() as f64 / crossed.len().max(1) as f64
 }
 
-/// For each triangle one of another part that it crosses, if any. The foot of a part may lie in the stem.
+/// Returns for each triangle one of another part that it crosses, if any. The foot of a part may lie in the stem.
 pub fn crossed(rows: &[PartTriangle]) -> Vec<Option<usize>> {
     let mut crossed = vec![None; rows.len()];
     let low = |t: &[DVec3; 3]| t[0].min(t[1]).min(t[2]);
@@ -56,7 +56,7 @@ pub fn crossed(rows: &[PartTriangle]) -> Vec<Option<usize>> {
         .iter()
         .filter(|b| b.0.is_finite() && b.1.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x.0.y), b.max(x.1.y)));
-    // Slices of the height, and in each a sweep along x: candidates are those whose boxes overlap.
+    // Slices of the height, and in each a sweep along x: candidates have overlapping boxes.
     const SLICES: usize = 160;
     let thick = ((top - bottom) / SLICES as f64).max(1e-12);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to SLICES")]
@@ -90,14 +90,14 @@ pub fn crossed(rows: &[PartTriangle]) -> Vec<Option<usize>> {
     crossed
 }
 
-/// Share of the triangles of all parts that cross another part's; of one flower, or of the whole plant with its stems
-/// and leaves.
+/// Returns the share of the triangles of all parts that cross another part's; of one flower, or of the whole plant with
+/// its stems and leaves.
 pub fn part_overlap(plant: &Plant, flower: Option<FlowerId>) -> f64 {
     share(&crossed(&part_triangles(plant, flower)))
 }
 
-/// The triangles of all parts: petals, sepals, stamens, pistil, disc, fruit, receptacle; without a flower given also
-/// leaves and stems. The same rows at every day of a flower.
+/// Returns the triangles of all parts: petals, sepals, stamens, pistil, disc, fruit, receptacle; if no flower is given
+/// also leaves and stems. The same rows on every day of a flower.
 pub fn part_triangles(plant: &Plant, flower: Option<FlowerId>) -> Vec<PartTriangle> {
     let mut rows = Vec::new();
     let mut part = STEM;
@@ -142,14 +142,14 @@ pub fn part_triangles(plant: &Plant, flower: Option<FlowerId>) -> Vec<PartTriang
     rows
 }
 
-/// Organs that come one after the other and are one part: an anther on its filament, a pistil on its ovary, florets on
-/// their disc, a parachute on its fruit.
+/// Whether consecutive organs are one part: an anther on its filament, a pistil on its ovary, florets on their disc, a
+/// parachute on its fruit.
 const fn joined(last: OrganKind, next: OrganKind) -> bool {
     use OrganKind::{Anther, Disc, Floret, Fruit, Pistil, Stamen};
     matches!((last, next), (Stamen, Anther) | (Fruit, Pistil) | (Disc | Floret, Floret) | (Fruit, Floret))
 }
 
-/// A strand as a tube of few sides.
+/// Adds a strand as a tube of few sides.
 fn tube(
     rows: &mut Vec<PartTriangle>,
     (part, kind): (u32, Option<OrganKind>),
@@ -180,12 +180,12 @@ fn tube(
     }
 }
 
-/// An edge of one passes through the inside of the other.
+/// Whether an edge of one passes through the inside of the other.
 fn crosses(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     (0..3).any(|k| pierces(a[k], a[(k + 1) % 3], b)) || (0..3).any(|k| pierces(b[k], b[(k + 1) % 3], a))
 }
 
-/// Signed volumes: the segment's ends lie on both sides, and the line passes all edges on one side.
+/// Tests by signed volumes: the segment's ends lie on both sides, and the line passes all edges on one side.
 fn pierces(p: DVec3, q: DVec3, t: &[DVec3; 3]) -> bool {
     let normal = (t[1] - t[0]).cross(t[2] - t[0]);
     let (dp, dq) = (normal.dot(p - t[0]), normal.dot(q - t[0]));

@@ -1,4 +1,4 @@
-//! What can be asked of the parts of a flower beside its petals: stamens, disc, fruit, clusters, leaves.
+//! Settings of the parts of a flower other than its petals: stamens, disc, fruit, clusters, leaves.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stamens {
-    /// How many, 0 to 500.
+    /// Number of stamens, 0 to 500.
     #[schemars(range(min = 0, max = 500))]
     pub count: u32,
     /// Length of one in an open flower, metres.
@@ -28,13 +28,13 @@ pub struct Stamens {
     /// Length of an anther as a share of the stamen, 0.02 to 0.9, default 0.17.
     #[schemars(range(min = 0.02, max = 0.9))]
     pub anther: f64,
-    /// They fall as the flower wilts, 0 not at all to 1 before the petals, default 0.
+    /// Share of the wilting at which they fall, from 0, not at all, to 1, before the petals; default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub shed: f64,
 }
 
 impl Default for Stamens {
-    /// None.
+    /// Returns settings for no stamens.
     fn default() -> Self {
         Self {
             count: 0,
@@ -65,13 +65,13 @@ pub struct Disc {
     /// Linear colour of open florets with their pollen.
     #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub open_color: [f32; 3],
-    /// Linear colour of what is under the florets and of withered ones.
+    /// Linear colour of the dome under the florets and of withered florets.
     #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub dry_color: [f32; 3],
 }
 
 impl Default for Disc {
-    /// That of a sunflower.
+    /// Returns the disc of a sunflower.
     fn default() -> Self {
         Self {
             florets: 280,
@@ -83,7 +83,7 @@ impl Default for Disc {
     }
 }
 
-/// The ovary and the fruit that grows of it.
+/// The ovary and the fruit that grows from it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Fruit {
@@ -102,7 +102,7 @@ pub struct Fruit {
     /// Radius of a cap of stigmas on it, as a share of its own, 0 to 1.2, default 0.
     #[schemars(range(min = 0.0, max = 1.2))]
     pub cap: f64,
-    /// Ribs round it, 0 to 20, default 0.
+    /// Number of ribs around it, 0 to 20, default 0.
     #[schemars(range(min = 0, max = 20))]
     pub ribs: u32,
     /// It grows below petals and sepals (an inferior ovary, a hip). Default false.
@@ -116,7 +116,7 @@ pub struct Fruit {
 }
 
 impl Default for Fruit {
-    /// None.
+    /// Returns settings for no fruit.
     fn default() -> Self {
         Self {
             length_m: 0.0,
@@ -132,11 +132,11 @@ impl Default for Fruit {
     }
 }
 
-/// Fruits with a parachute each, all round the head: a dandelion's clock.
+/// Fruits with a parachute each, all around the head: a dandelion's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Achenes {
-    /// How many, 0 to 400, default none.
+    /// Number of fruits, 0 to 400, default none.
     #[schemars(range(min = 0, max = 400))]
     pub count: u32,
     /// From the head to the parachute, metres, default 0.016.
@@ -151,13 +151,13 @@ pub struct Achenes {
 }
 
 impl Default for Achenes {
-    /// None.
+    /// Returns settings for no achenes.
     fn default() -> Self {
         Self { count: 0, length_m: 0.016, head_m: 0.004, color: [0.16, 0.1, 0.04] }
     }
 }
 
-/// How the flowers of a cluster stand.
+/// Arrangement of the flowers of a cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Cluster {
@@ -176,10 +176,10 @@ pub struct Cluster {
     /// of the cluster.
     #[schemars(range(min = 0.0, max = 60.0), extend("x-unit" = "d"))]
     pub spread_days: f64,
-    /// How far flowers all turn to the front, 0 evenly round to 1, default 0.
+    /// Share to which all flowers turn to the front, from 0, evenly around, to 1; default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub sided: f64,
-    /// How far the axis arches over, degrees, 0 to 120, default 0.
+    /// Angle by which the axis arches over, degrees, 0 to 120, default 0.
     #[schemars(range(min = 0.0, max = 120.0), extend("x-unit" = "deg"))]
     pub arch_deg: f64,
 }
@@ -188,7 +188,7 @@ pub struct Cluster {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClusterForm {
-    /// All stalks from one place; outer flowers open first.
+    /// All stalks from one point; outer flowers open first.
     #[default]
     Umbel,
     /// Flowers along an axis, each on a stalk; lower ones open first.
@@ -198,7 +198,7 @@ pub enum ClusterForm {
 }
 
 impl Default for Cluster {
-    /// An umbel whose flowers open together.
+    /// Returns an umbel whose flowers open together.
     fn default() -> Self {
         Self {
             form: ClusterForm::Umbel,
@@ -212,14 +212,14 @@ impl Default for Cluster {
     }
 }
 
-/// How far bud and wilted flower nod, as shares of the angle of the open one.
+/// Nodding of bud and wilted flower, as shares of the angle of the open one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Nods {
-    /// Of the bud, 0 to 40, default 0.35.
+    /// Share of the bud, 0 to 40, default 0.35.
     #[schemars(range(min = 0.0, max = 40.0))]
     pub bud: f64,
-    /// Of the wilted flower, 0 to 40, default 1.6.
+    /// Share of the wilted flower, 0 to 40, default 1.6.
     #[schemars(range(min = 0.0, max = 40.0))]
     pub wilted: f64,
 }
@@ -235,7 +235,7 @@ impl Default for Nods {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Foliage {
-    /// How many, 1 to 200, default 3.
+    /// Number of leaves, 1 to 200, default 3.
     #[schemars(range(min = 1, max = 200))]
     pub count: u32,
     /// Leaves at one node, 1 to 12, default 1.
@@ -259,7 +259,8 @@ pub struct Foliage {
     /// Greatest width, metres, default 0.03.
     #[schemars(range(min = 1e-4, max = 5.0), extend("x-unit" = "m"))]
     pub width_m: f64,
-    /// Length of the stalk of the leaf, metres, default 0. Of a compound leaf: of the part that bears leaflets too.
+    /// Length of the stalk of the leaf, metres, default 0. For a compound leaf it includes the part that bears
+    /// leaflets.
     #[schemars(range(min = 0.0, max = 2.0), extend("x-unit" = "m"))]
     pub petiole_m: f64,
     /// Leaflets of a pinnate leaf, 1 to 21, default 1: a simple leaf.
@@ -271,13 +272,13 @@ pub struct Foliage {
     /// Width at the base as a share of the greatest, 0 to 1, default 0.1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub base: f64,
-    /// How pointed the tip is, 0 round to 1, default 0.9.
+    /// Pointedness of the tip, 0 round to 1, default 0.9.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub point: f64,
-    /// How far the blade reaches back on both sides of its stalk, as a share of the length, 0 to 0.6, default 0.
+    /// Length of the basal lobes on both sides of the stalk, as a share of the blade's length, 0 to 0.6, default 0.
     #[schemars(range(min = 0.0, max = 0.6))]
     pub heart: f64,
-    /// Lobes or teeth of a side, 0 to 20, default 0.
+    /// Lobes or teeth per side, 0 to 20, default 0.
     #[schemars(range(min = 0, max = 20))]
     pub lobes: u32,
     /// Their depth as a share of half the width, 0 to 0.9, default 0.
@@ -286,16 +287,16 @@ pub struct Foliage {
     /// Angle to the stalk at base, middle and tip, degrees.
     #[schemars(inner(range(min = -90.0, max = 270.0)), extend("x-unit" = "deg"))]
     pub angle_deg: [f64; 3],
-    /// How much steeper the last ones stand, as a share, 0 to 1, default 0.
+    /// Reduction of the angle of the last ones, which stand steeper, as a share, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub steeper: f64,
-    /// How much smaller the last ones are, as a share, 0 to 0.9, default 0.
+    /// Reduction of the size of the last ones, as a share, 0 to 0.9, default 0.
     #[schemars(range(min = 0.0, max = 0.9))]
     pub smaller: f64,
-    /// Distance of one to the next within it where several stand at one place, metres, default 0.
+    /// Distance between neighbours, one within the other, if several stand at one place, metres, default 0.
     #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "m"))]
     pub gap_m: f64,
-    /// How far both halves are raised, degrees, -60 to 80, default 12.
+    /// Angle by which both halves are raised, degrees, -60 to 80, default 12.
     #[schemars(range(min = -60.0, max = 80.0), extend("x-unit" = "deg"))]
     pub fold_deg: f64,
     /// Linear colour.
@@ -304,7 +305,7 @@ pub struct Foliage {
 }
 
 impl Default for Foliage {
-    /// Three lance-shaped leaves at the foot.
+    /// Returns three lance-shaped leaves at the foot.
     fn default() -> Self {
         Self {
             count: 3,

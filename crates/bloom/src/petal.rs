@@ -1,4 +1,4 @@
-//! One petal at one day: its profile, nested within those outside it, and the grid of points that follows.
+//! One petal on one day: its profile, nested within those outside it, and the resulting grid of points.
 
 use base::{Seed, ops};
 use glam::DVec3;
@@ -10,17 +10,17 @@ use crate::wanted::{FlowerSpec, PetalMesh, rad};
 use crate::whorl::{Aestivation, Fate, Whorl};
 use crate::{GrowthLaw, Quantity};
 
-/// Of a closed bud, linear.
+/// Colour of a closed bud, linear.
 const BUD: [f32; 3] = [0.27, 0.40, 0.09];
 /// Steps of a profile.
 const FINE: usize = 96;
-/// How long a petal falls at most, as a share of the wilting.
+/// Longest duration of the fall of a petal, as a share of the wilting.
 const FALL: f64 = 0.03;
 
-/// When each petal of each ring falls, by its rank: one after another, none while another is on its way.
+/// Times at which each petal of each ring falls, by its rank: one after another, none while another is falling.
 pub(crate) struct Falls {
     rings: Vec<Vec<f64>>,
-    /// How long one falls.
+    /// Duration of a fall.
     long: f64,
 }
 
@@ -33,7 +33,7 @@ impl Falls {
             let spread = 0.5 * (0.9 - whorl.falls);
             let own = (0..whorl.count).map(|rank| whorl.falls + spread * f64::from(rank) / last);
             if whorl.fate == Fate::Gone {
-                // Nothing is on its way that could meet another.
+                // No falling petal could meet another.
                 out[ring] = own.collect();
             } else {
                 times.extend(own.enumerate().map(|(rank, time)| (time, ring, rank)));
@@ -47,7 +47,7 @@ impl Falls {
             row.0 = row.0.max(soonest);
             soonest = row.0 + gap;
         }
-        // All have fallen in the end.
+        // All have fallen by the end.
         let mut latest = 0.95;
         for &(time, ring, rank) in times.iter().rev() {
             out[ring][rank] = time.min(latest);
@@ -57,14 +57,14 @@ impl Falls {
     }
 }
 
-/// Where a flower is in its life.
+/// Age of a flower.
 pub(crate) struct Times<'a> {
     law: &'a GrowthLaw,
-    /// Share of the opening, below 0 of a bud that is younger than the first day.
+    /// Share of the opening, below 0 for a bud that is younger than the first day.
     share: f64,
-    /// -1 the bud, 0 full bloom, 1 the end.
+    /// Age: -1 is the bud, 0 full bloom, 1 the end.
     pub life: f64,
-    /// How far it has opened, wilted and ripened, 0 to 1.
+    /// Degree of opening, wilting and ripening, 0 to 1.
     pub open: f64,
     pub wilt: f64,
     pub ripe: f64,
@@ -89,7 +89,7 @@ impl<'a> Times<'a> {
         Self { wilt, ripe, ..times }
     }
 
-    /// How far it has wilted and ripened at a moment of its life.
+    /// Returns the degrees of wilting and ripening at an age.
     fn late(&self, life: f64) -> [f64; 2] {
         let wilt = (life / (1.0 - self.ripening)).clamp(0.0, 1.0);
         let ripe = ((life - 1.0 + self.ripening) / self.ripening.max(1e-9)).clamp(0.0, 1.0);
@@ -97,16 +97,16 @@ impl<'a> Times<'a> {
     }
 }
 
-/// State of one petal at one day.
+/// State of one petal on one day.
 #[derive(Clone, Copy)]
 pub(crate) struct State {
     pub angle: [f64; 3],
     length: f64,
     width: f64,
-    /// How far it has opened and wilted, 0 to 1.
+    /// Degree of opening and wilting, 0 to 1.
     open: f64,
     wilt: f64,
-    /// How far it has gone to the colour of age.
+    /// Share of the colour of age.
     aged: f64,
 }
 
@@ -115,7 +115,7 @@ fn blend3(a: [f64; 3], b: [f64; 3], g: [f64; 3]) -> [f64; 3] {
 }
 
 impl Whorl {
-    /// The state of a petal that opens later than the first of its ring by a share of the opening.
+    /// Returns the state of a petal that opens later than the first of its ring by a share of the opening.
     pub(crate) fn state(&self, times: &Times<'_>, later: f64) -> State {
         self.state_at(times, later, times.life)
     }
@@ -149,7 +149,7 @@ impl Whorl {
         }
     }
 
-    /// The colour at a place: from base to tip, a little deeper along the middle; withering browns it from the
+    /// Returns the colour at a point: from base to tip, slightly deeper along the middle; withering browns it from the
     /// margin and the tip inwards.
     #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
     fn color(&self, u: f64, v: f64, state: &State) -> [f32; 3] {
@@ -159,12 +159,12 @@ impl Whorl {
         // The margin is brown at half of the wilting, the middle at its end.
         let inner = 1.0 - (v * v).max(u * u);
         let withered = ops::smoothstep(0.0, 1.0, (1.9 * state.wilt - 0.9 * inner).clamp(0.0, 1.0));
-        // What shrivels little keeps its colour.
+        // A petal that shrivels little keeps its colour.
         let withered = (withered * (0.35 + 0.65 * self.shrivel)) as f32;
-        // The bud greens from its base and along its middle, and the green goes as it opens.
+        // The bud greens from its base and along its middle, and the green disappears as it opens.
         let young = 1.0 - ops::smoothstep(0.0, 0.75, state.open);
         let green = (self.green * young * (1.0 - 0.5 * v * v) * (1.0 - 0.25 * u * u)) as f32;
-        let (guide, aged) = (self.guide.at(u, v) as f32, state.aged as f32);
+        let (guide, aged) = (self.guide.strength_at(u, v) as f32, state.aged as f32);
         // Pink over green is grey: the tip's own colour comes when most of the green has gone.
         let late = (1.0 - green) * (1.0 - green);
         [0, 1, 2].map(|q| {
@@ -178,7 +178,7 @@ impl Whorl {
     }
 }
 
-/// Where rows and columns of a petal lie.
+/// Positions of rows and columns of a petal.
 pub(crate) struct Rows {
     across: Vec<f64>,
     along: Vec<f64>,
@@ -196,20 +196,21 @@ impl Rows {
     }
 }
 
-/// How far out what lies outside has bent, by the way along it from its base: nothing inside bends farther.
+/// Outward bending of the petals outside, by the length along them from their base: nothing inside bends farther.
 pub(crate) struct Nest {
-    /// Metres a step.
+    /// Step, metres.
     step: f64,
     angle: [f64; FINE + 1],
-    /// Distance from the axis that a closed bud leaves at each height, and its top.
+    /// Radius of the free space in a closed bud at each height, and its top.
     room: [f64; FINE + 1],
     top: f64,
 }
 
-/// What lies inside a closed bud is so much narrower: a share of the distance from the axis, of its length at most.
+/// Reduction of the radius inside a closed bud, as a share of the distance from the axis.
 const WITHIN: f64 = 0.16;
+/// Largest such reduction, as a share of its length.
 const MARGIN: f64 = 0.02;
-/// In a closed bud, edges are so far over one another at most, in distances from the axis.
+/// Largest overlap of edges in a closed bud, in distances from the axis.
 const OVER: f64 = 0.06;
 
 impl Nest {
@@ -218,7 +219,7 @@ impl Nest {
         Self { step: reach.max(1e-6) / FINE as f64, angle: far, room: far, top: f64::INFINITY }
     }
 
-    /// The greatest distance from the axis at a height, in a bud that closes.
+    /// Returns the greatest distance from the axis at a height, in a closing bud.
     fn room(&self, height: f64) -> f64 {
         self.room[self.bin(height)]
     }
@@ -229,7 +230,7 @@ impl Nest {
         (height / self.step + 0.1 * FINE as f64).clamp(0.0, FINE as f64) as usize
     }
 
-    /// A bud that closes shuts in what lies within it, where it bends inwards.
+    /// Limits the room inside a closing bud, where it bends inwards.
     fn shut_in(&mut self, curve: &Curve) {
         if curve.closed <= 0.0 {
             return;
@@ -258,7 +259,7 @@ impl Nest {
         self.top = self.top.min(top - 2.0 * self.step + (1.0 / tight.max(1e-9) - 1.0) * curve.length);
     }
 
-    /// The greatest angle to the axis at a way from the base, radians.
+    /// Returns the greatest angle to the axis at a length from the base, radians.
     pub(crate) fn limit(&self, way: f64) -> f64 {
         let at = (way / self.step).clamp(0.0, FINE as f64);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to FINE")]
@@ -267,7 +268,7 @@ impl Nest {
         if a.is_finite() && b.is_finite() { ops::lerp(a, b, at - low as f64) } else { a.min(b) }
     }
 
-    /// Takes a profile in: what comes next lies inside it.
+    /// Adds a profile: the next ones lie inside it.
     fn hold(&mut self, curve: &Curve) {
         for (k, angle) in self.angle.iter_mut().enumerate() {
             let way = k as f64 * self.step;
@@ -278,14 +279,14 @@ impl Nest {
     }
 }
 
-/// The line that a petal follows in the half plane of its azimuth, by even steps.
+/// The line that a petal follows in the half plane of its azimuth, in even steps.
 #[derive(Clone)]
 pub(crate) struct Curve {
     length: f64,
     /// Distance from the axis, height, and sine and cosine of the angle to the axis.
     points: [[f64; 4]; FINE + 1],
     angles: [f64; FINE + 1],
-    /// How far it comes back to the axis, 0 to 1: what does so closes a bud.
+    /// Degree to which it returns to the axis, 0 to 1: a returning one closes a bud.
     closed: f64,
 }
 
@@ -306,7 +307,7 @@ impl Curve {
             let (sin, cos) = ops::sin_cos(angle);
             angles[k] = angle;
             points[k] = [radius, height, sin, cos];
-            // A profile that comes to the axis runs up along it.
+            // A profile that reaches the axis runs up along it.
             radius = (radius + sin * step).max(least);
             height = (height + cos * step).min(nest.top.max(height));
             radius = radius.min(nest.room(height));
@@ -317,7 +318,7 @@ impl Curve {
         Self { length: state.length, points, angles, closed }
     }
 
-    fn at(&self, v: f64) -> [f64; 4] {
+    fn interpolate(&self, v: f64) -> [f64; 4] {
         let (low, t) = Self::row(v);
         let (a, b) = (&self.points[low], &self.points[low + 1]);
         [0, 1, 2, 3].map(|q| ops::lerp(a[q], b[q], t))
@@ -337,7 +338,7 @@ impl Curve {
 }
 
 impl FlowerSpec {
-    /// All petals of a ring, and their profile taken into the nest.
+    /// Adds all petals of a ring, and their profile to the nest.
     pub(crate) fn ring(
         &self,
         bed: &mut Bed<'_>,
@@ -371,7 +372,7 @@ impl FlowerSpec {
                 let mut state = ring.state_at(times, later, life);
                 let curve = Curve::new(ring, &state, nest);
                 let fallen = if loose { ((times.life - released) / falls.0.long).min(1.0) } else { 0.0 };
-                // What hangs loose still holds what lies inside it.
+                // A loosely hanging petal still encloses those inside it.
                 if fallen < 0.6 {
                     nest.hold(&curve);
                 }
@@ -394,7 +395,7 @@ impl FlowerSpec {
                 bed.petal(kind, grid);
             }
         }
-        // Petals of one ring lie over one another; the next ring lies within.
+        // Petals of one ring overlap one another; the next ring lies within.
         if let Some(curve) = innermost {
             nest.shut_in(&curve);
         }
@@ -405,7 +406,8 @@ impl FlowerSpec {
         rows.along.iter().flat_map(|&v| across().map(move |u| ring.color(u, v, state))).collect()
     }
 
-    /// Height of the waves of margins, as a share of the petal's length: soft in bloom, crumpled when withered.
+    /// Returns the height of the waves of margins, as a share of the petal's length: soft in bloom, crumpled when
+    /// withered.
     fn waves(azimuth: f64, v: f64, state: &State) -> f64 {
         let soft = 0.010 * state.open * ops::sin(5.0 * azimuth + 2.0 * v) * (1.0 - state.wilt);
         if state.wilt <= 0.0 {
@@ -415,7 +417,7 @@ impl FlowerSpec {
         soft + 0.019 * state.wilt * crumpled
     }
 
-    /// One petal in the flower's own coordinates.
+    /// Makes one petal in the flower's own coordinates.
     fn petal(
         &self,
         whorl: &Whorl,
@@ -433,7 +435,7 @@ impl FlowerSpec {
             Aestivation::Valvate => 0.485 * whorl.narrowest(),
             Aestivation::Fused => 0.5 * apart,
         };
-        // In a bud that closes, neighbours meet; as it opens, they get the width that is theirs.
+        // In a closing bud, neighbours meet; as it opens, they get their own width.
         let meet = match whorl.aestivation {
             Aestivation::Contorted | Aestivation::Imbricate => 0.54 * apart,
             Aestivation::Valvate => widest,
@@ -456,14 +458,14 @@ impl FlowerSpec {
                     v -= 0.14 * whorl.fringe * row * row * row * f64::from(u8::from(j % 2 == 1));
                     broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from(u8::from(i % 2 == 1));
                 }
-                let [radius, height, s, c] = curve.at(v);
+                let [radius, height, s, c] = curve.interpolate(v);
                 let wrapped = if fused { widest } else { broad / radius.max(1e-4) };
                 let shut = shut * meet * (1.0 - ops::smoothstep(0.92, 1.0, v));
                 let spread = wrapped.max(shut).min(0.9 * ops::PI).min(widest);
                 let angle = azimuth + u * spread + twist * v;
                 let (sin, cos) = ops::sin_cos(angle);
-                // Waves are those of the whole flower: petals that lie over one another wave together.
-                // Near the axis there is no room for them.
+                // The waves belong to the whole flower: overlapping petals wave together. Near the axis there is no
+                // room for them.
                 let room = state.length.min(4.0 * radius) * v * v * whorl.crumple;
                 let own = match whorl.aestivation {
                     Aestivation::Contorted => whorl.lean_m * u,
@@ -481,7 +483,7 @@ impl FlowerSpec {
     }
 }
 
-/// A petal of its own: in the flower, on its way down, on the ground, or gone.
+/// Places one petal: in the flower, on its way down, on the ground, or gone.
 fn place(
     bed: &mut Bed<'_>,
     kind: OrganKind,
@@ -496,7 +498,7 @@ fn place(
         grid.points.iter_mut().for_each(|p| *p = root + (*p - root) * (1.0 - fallen));
     }
     if fallen > 0.0 && ring.fate == Fate::Drop {
-        grid.points.iter_mut().for_each(|p| *p = bed.at(*p));
+        grid.points.iter_mut().for_each(|p| *p = bed.transform(*p));
         ground.drop(&mut grid, (bed.place.0, ground.azimuth(k)), fallen, seed);
         bed.loose_petal(kind, grid);
     } else {

@@ -1,4 +1,4 @@
-//! A growth law -> a picture of its fits with their points.
+//! Plots a growth law as a picture of its fits with their points.
 
 use core::fmt::Write as _;
 
@@ -10,8 +10,8 @@ const WIDTH: f64 = 300.0;
 const HEIGHT: f64 = 190.0;
 const COLUMNS: usize = 4;
 
-/// All laws as panels of an SVG: measured values as dots, the fit as a line, first and final value, r and R2 beside, and the band in which
-/// 9 of 10 new measurements lie. Values in mm, times in the series' own count and unit.
+/// Plots all laws as panels of an SVG: measured values as dots, the fit as a line, labels with first and final value, r
+/// and R2, and the band that contains 9 of 10 new measurements. Values in mm, times in the series' own count and unit.
 ///
 /// ```
 /// let svg = bloom::plot_svg(&bloom::GrowthLaw::logistic("lily", 6.0, 0.9));
@@ -37,7 +37,7 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
     s
 }
 
-/// What a panel says of its law: where it begins and ends, not K and p0 above some constant.
+/// Returns the label of a panel: the first and final value of the law, not K and p0 above some constant.
 fn figures(row: &RegionLaw, time: TimeUnit) -> String {
     let time = time.word();
     let start = row.value(0.0) * 1e3;
@@ -53,7 +53,8 @@ fn figures(row: &RegionLaw, time: TimeUnit) -> String {
     }
 }
 
-/// Between which values, mm, 9 of 10 new measurements lie on days of the span; nothing where too few values tell.
+/// Returns the interval, mm, that contains 9 of 10 new measurements on days of the span; empty if there are too few
+/// values.
 fn law_band(law: &GrowthLaw, row: &RegionLaw) -> Vec<(f64, [f64; 2])> {
     let days = (0..=30).map(|k| law.span_days * f64::from(k) / 30.0);
     let band: Option<Vec<_>> =
@@ -128,7 +129,7 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
 mod tests {
     use super::*;
 
-    /// XML has no such characters: no program would open the picture.
+    /// XML excludes these characters: no program would open the picture.
     #[test]
     fn names_with_characters_that_xml_lacks_make_a_picture() {
         let svg = plot_svg(&GrowthLaw::logistic("a\u{1}<b>\u{fffe}", 6.0, 0.9));

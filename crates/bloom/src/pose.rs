@@ -1,4 +1,4 @@
-//! Scans of several days -> how the plant and its organs moved between them, apart from how they grew.
+//! Motion of the plant and its organs between scans of several days, apart from their growth.
 
 use base::Run;
 use geom::{best_rotation, extent};
@@ -11,56 +11,56 @@ use crate::{
     Weights, register,
 };
 
-/// A turn about a place and a shift: `p -> to + turn * (p - from)`.
+/// A rotation about a point and a translation: `p -> to + turn * (p - from)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
-    /// The place that the turn is about: for a plant its foot, for an organ where it sits on its bearer. Metres.
+    /// Centre of the rotation: for a plant its foot, for an organ its joint on the bearer. Metres.
     pub from: DVec3,
-    /// Where that place goes.
+    /// New position of that point.
     pub to: DVec3,
-    /// The turn.
+    /// The rotation.
     pub turn: DQuat,
 }
 
 impl RigidMotion {
-    /// None.
+    /// No motion.
     pub const REST: Self = Self { from: DVec3::ZERO, to: DVec3::ZERO, turn: DQuat::IDENTITY };
 
-    /// The moved point.
+    /// Returns the moved point.
     pub fn apply(&self, p: DVec3) -> DVec3 {
         self.to + self.turn * (p - self.from)
     }
 
-    /// The motion back.
+    /// Returns the inverse motion.
     #[must_use]
     pub fn inverse(&self) -> Self {
         Self { from: self.to, to: self.from, turn: self.turn.inverse() }
     }
 
-    /// A share of the motion: none at 0, all of it at 1, the turn the shorter way round.
+    /// Returns a share of the motion: none at 0, all of it at 1, the rotation the shorter way round.
     #[must_use]
     pub fn part(&self, share: f64) -> Self {
         Self { from: self.from, to: self.from.lerp(self.to, share), turn: base::turn::part(self.turn, share) }
     }
 
-    /// The angle of the turn, 0 to pi.
+    /// Returns the angle of the rotation, 0 to pi.
     pub fn angle(&self) -> f64 {
         2.0 * base::ops::acos_clamped(self.turn.w.abs())
     }
 
-    /// The unit axis of the turn; +Y where there is none.
+    /// Returns the unit axis of the rotation; +Y if there is none.
     pub fn axis(&self) -> DVec3 {
         let axis = DVec3::new(self.turn.x, self.turn.y, self.turn.z);
         (if self.turn.w < 0.0 { -axis } else { axis }).try_normalize().unwrap_or(DVec3::Y)
     }
 
-    /// How far the place of the turn goes, metres.
+    /// Returns the displacement of the centre of the rotation, metres.
     pub fn shift(&self) -> f64 {
         self.from.distance(self.to)
     }
 
-    /// The turn about the vertical and the shift that bring points nearest to their partners: how a pot moves, which stands
-    /// upright on every day.
+    /// Returns the rotation about the vertical and the translation that bring points nearest to their partners: the
+    /// motion of a pot, which stands upright on every day.
     fn upright(pairs: &[Places], from: DVec3) -> Self {
         let n = pairs.len().max(1) as f64;
         let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
@@ -74,7 +74,8 @@ impl RigidMotion {
         Self { from, to: b + turn * (from - a), turn }
     }
 
-    /// The motion that brings points nearest to their partners (least squares; Horn 1987), about the place `from`.
+    /// Returns the motion that brings points nearest to their partners (least squares; Horn 1987), about the point
+    /// `from`.
     pub(crate) fn of_pairs(pairs: &[Places], from: DVec3) -> Self {
         let n = pairs.len().max(1) as f64;
         let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
@@ -84,7 +85,7 @@ impl RigidMotion {
     }
 }
 
-/// How one organ changed from one scan to the next.
+/// Change of one organ from one scan to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrganStep {
     /// Its name.
@@ -93,62 +94,63 @@ pub struct OrganStep {
     pub pose: RigidMotion,
     /// Growth in size: the factor of all its lengths, 1 for none.
     pub scale: f64,
-    /// Growth in shape: mean distance that motion and size leave, metres.
+    /// Growth in shape: mean distance that remains after motion and size, metres.
     pub shape_m: f64,
-    /// What the registration leaves between the later scan and the organ carried there.
+    /// Residual of the registration between the later scan and the carried organ.
     pub residual: ShapeError,
 }
 
-/// What happened between two scans that follow one another.
+/// Changes between two consecutive scans.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseStep {
     /// Day of the earlier scan.
     pub from_day: f64,
     /// Day of the later one.
     pub to_day: f64,
-    /// Motion of the whole plant about its foot, in the coordinates of the scanner; at rest where fewer than two organs are
-    /// on both days, as then nothing tells the plant's motion from the organ's.
+    /// Motion of the whole plant about its foot, in the coordinates of the scanner; at rest if fewer than two organs
+    /// exist on both days, as the plant's motion is then indistinguishable from the organ's.
     pub plant: RigidMotion,
-    /// Every organ that is there on both days.
+    /// Every organ that exists on both days.
     pub organs: Vec<OrganStep>,
-    /// Organs that are there on the later day only.
+    /// Organs that exist on the later day only.
     pub appeared: Vec<String>,
-    /// Organs that are there on the earlier day only.
+    /// Organs that exist on the earlier day only.
     pub vanished: Vec<String>,
 }
 
-/// Turns between two scans beyond which organs may have been taken for one another.
+/// Rotations between two scans beyond which organs may have been confused.
 struct Believable {
-    /// A pot is seldom turned by more, and leaves are not looked for beyond it ([`crate::match_organs`]). Degrees.
+    /// Limit for the pot, which is seldom turned by more; leaves are not matched beyond it ([`crate::match_organs`]).
+    /// Degrees.
     plant_deg: f64,
-    /// One organ by itself, in the frame of the plant. A seed leaf swings by 34 degrees in a night. Degrees.
+    /// Limit for one organ by itself, in the frame of the plant. A seed leaf swings by 34 degrees in a night. Degrees.
     organ_deg: f64,
-    /// Half of the organs, each by itself. Degrees.
+    /// Limit that half of the organs exceed, each by itself. Degrees.
     most_organs_deg: f64,
 }
 
 const BELIEVABLE: Believable = Believable { plant_deg: 60.0, organ_deg: 60.0, most_organs_deg: 40.0 };
 
-/// Why it may be that organs of two scans were taken for one another.
+/// Reason why organs of two scans may have been confused.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PoseDoubt {
     /// The whole plant turned far.
     Plant {
-        /// By how much, degrees.
+        /// Angle, degrees.
         turn_deg: f64,
     },
-    /// What is left when the turn of the plant is taken off are organs that turned far, each its own way.
+    /// Relative to the plant, organs turned far, each in its own way.
     Organs {
         /// The one that turned farthest.
         organ: String,
-        /// By how much, degrees.
+        /// Angle, degrees.
         turn_deg: f64,
     },
 }
 
 impl PoseStep {
-    /// Whether organs may have been taken for one another between the two scans, or the plant was turned so far that they were;
-    /// `None` where fewer than two organs are on both days, as one may turn as it likes.
+    /// Returns a doubt if organs may have been confused between the two scans, or the plant was turned far enough to
+    /// cause that; `None` if fewer than two organs exist on both days, as a single one may turn freely.
     pub fn doubt(&self) -> Option<PoseDoubt> {
         if self.organs.len() < 2 {
             return None;
@@ -171,23 +173,23 @@ impl PoseStep {
 pub struct Settled {
     /// The stages in the frame of the plant: that of the first scan.
     pub stages: Vec<Stage>,
-    /// What happened from each stage to the next.
+    /// Changes from each stage to the next.
     pub steps: Vec<PoseStep>,
-    /// From the plant's frame to the scanner's, one a stage.
+    /// Motion from the plant's frame to the scanner's, one per stage.
     poses: Vec<RigidMotion>,
 }
 
-/// Where a point is on one day and on the next.
+/// Positions of a point on one day and on the next.
 type Places = (DVec3, DVec3);
 
-/// Points of an organ that pose is estimated from: more change no figure that is printed.
+/// Points of an organ for the estimate of its pose: more change no printed figure.
 const SAMPLE: usize = 1500;
 
-/// Takes the motion of the whole plant between scans off: what is left is articulation and growth.
+/// Removes the motion of the whole plant between scans: articulation and growth remain.
 ///
 /// Organs of the same name are registered from day to day. The rigid motion that brings the carried points nearest to
-/// their places, all organs together, is the plant's; the same for one organ alone, in the plant's frame, is the organ's.
-/// Cost: a registration for each organ and step.
+/// their partners, all organs together, is the plant's; the same for one organ alone, in the plant's frame, is the
+/// organ's. Cost: a registration for each organ and step.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] for an organ below 8 points, [`BloomError::Cancelled`].
@@ -225,12 +227,12 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
             vanished: names(a, b),
         });
         let before = out.poses[k - 1];
-        // First to the scanner's frame on the day before, then on.
+        // First to the scanner's frame on the day before, then further.
         let origin = before.inverse().apply(plant.from);
         out.poses[k] =
             RigidMotion { from: origin, to: plant.to, turn: (plant.turn * before.turn).normalize() };
         if out.poses[k] == RigidMotion::REST {
-            // The same bits.
+            // Keeps the same bits.
             continue;
         }
         let settle = out.poses[k].inverse();
@@ -246,7 +248,7 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
 fn organ_step(organ: &ScanOrgan, pairs: &[Places], residual: ShapeError) -> OrganStep {
     let mut pose = RigidMotion::of_pairs(pairs, organ.base);
     if let Some(along) = register::rod(pairs) {
-        // Of a stem nothing shows how far it rolls.
+        // The roll of a stem about its axis is not observable.
         pose.turn = base::turn::between(along, (pose.turn * along).normalize_or(along));
     }
     let n = pairs.len().max(1) as f64;
@@ -260,14 +262,14 @@ fn organ_step(organ: &ScanOrgan, pairs: &[Places], residual: ShapeError) -> Orga
 }
 
 impl Settled {
-    /// Scans whose pose is not taken apart.
+    /// Returns scans whose pose is not separated.
     pub(crate) fn unmoved(stages: &[Stage]) -> Self {
         Self { stages: stages.to_vec(), steps: vec![], poses: vec![RigidMotion::REST; stages.len()] }
     }
 
-    /// From the plant's frame to the scanner's on a day in the count of the stages: between two scans a share of the motion
-    /// from one to the next, as much as of the time; before the first and after the last as on that day, as nothing
-    /// tells how a pot is turned next.
+    /// Returns the motion from the plant's frame to the scanner's on a day in the count of the stages: between two
+    /// scans a share of the motion from one to the next, proportional to time; before the first and after the last as
+    /// on that day, as the next motion of a pot is unknown.
     pub fn pose(&self, day: f64) -> RigidMotion {
         let Some(k) = self.steps.iter().position(|s| day <= s.to_day) else {
             return self.poses.last().copied().unwrap_or(RigidMotion::REST);
@@ -279,19 +281,20 @@ impl Settled {
         RigidMotion { from: origin, to: on.to, turn: (on.turn * before.turn).normalize() }
     }
 
-    /// The two stages round a day; for a day before or after all the two nearest.
+    /// Returns the two stages around a day; for a day before or after all the two nearest.
     pub fn round(&self, day: f64) -> [usize; 2] {
         let last = self.stages.len().saturating_sub(1);
         let next = self.stages.iter().position(|s| day <= s.day).unwrap_or(last).clamp(1.min(last), last);
         [next.saturating_sub(1), next]
     }
 
-    /// The organs on a day in the count of the stages, in the frame of the plant: the points of both scans round the
-    /// day, each carried there. Both are measurements of the same organs: together they show what one scan missed.
+    /// Returns the organs on a day in the count of the stages, in the frame of the plant: the points of both scans
+    /// around the day, each carried there. Both are measurements of the same organs: together they fill gaps of one
+    /// scan.
     ///
     /// An organ that is new in the later scan grows out of the older ones, its points no denser than they were scanned.
-    /// Before the first and after the last scan the points of the nearest one go on as far as the law says; at rest where
-    /// it determines nothing.
+    /// Before the first and after the last scan the points of the nearest one continue as far as the law allows; at
+    /// rest if it determines nothing.
     ///
     /// # Errors
     /// As [`Motion::new`].
@@ -308,7 +311,7 @@ impl Settled {
         let carried = |first: &Stage, last: &Stage| -> Result<Vec<OrganPoints>, BloomError> {
             let pair = [first.clone(), last.clone()];
             let motion = Motion::since(first.day - begin, &pair, law.clone(), *spec, run)?;
-            let points = motion.at(day - first.day, run)?;
+            let points = motion.points_on_day(day - first.day, run)?;
             let of = |((name, rows), colors): (&(String, core::ops::Range<usize>), _)| OrganPoints {
                 name: name.clone(),
                 points: points[rows.clone()].to_vec(),
@@ -345,7 +348,8 @@ impl Settled {
     }
 }
 
-/// Every which point of a smaller copy of an organ is to stay for as many a unit of area: as the square of its size allows.
+/// Returns the step at which points of a smaller copy of an organ are kept for the same density per area: the square of
+/// its size ratio.
 fn stride(small: &[DVec3], whole: &[DVec3]) -> usize {
     let share = (extent(small) / extent(whole).max(1e-12)).clamp(0.0, 1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to the number of points")]

@@ -1,4 +1,4 @@
-//! First and last shape of an organ -> the lattice that carries one into the other.
+//! Registers the first and last shape of an organ: finds the lattice that carries one into the other.
 
 use base::Run;
 use geom::{KdTree, best_rotation, solve_positive};
@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use crate::thin::thin;
 use crate::{BloomError, Lattice, Obb, ScanOrgan, ShapeError, Weights, compare};
 
-/// How two shapes are brought together.
+/// Settings of the registration of two shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegisterSpec {
     /// Control points of the lattice along the three axes of the first shape's box, each 2 to 16. Default 4 x 4 x 4.
@@ -37,25 +37,25 @@ pub struct Registration {
     pub first: Lattice,
     /// The lattice whose deformation of the first shape is the last one, P1.
     pub last: Lattice,
-    /// Where the organ sits on its bearer, in the first shape.
+    /// Joint of the organ on its bearer, in the first shape.
     pub first_base: DVec3,
     /// The same in the last shape.
     pub last_base: DVec3,
-    /// The turn of the organ about its base.
+    /// The rotation of the organ about its base.
     pub turn: DQuat,
     /// Uniform growth about the base, 1 for none.
     pub scale: f64,
-    /// What is left between the deformed first and the last shape.
+    /// Residual between the deformed first and the last shape.
     pub residual: ShapeError,
 }
 
 /// Registers two shapes of one organ that share no vertices.
 ///
-/// Rigid at the base: the first shape is turned and scaled about its base so that the two overlap best (eight
-/// starts, then iterated nearest points). Then `P1 = argmin |B P - X|^2 + mu |L P|^2`, with `X` the nearest
-/// points both ways, B the Bernstein matrix and L second differences, from stiff to soft. Guaranteed: the same
-/// result for any thread count. Not guaranteed: that like parts meet where a shape has no features; the residual
-/// says how well the surfaces do. Cost: about a fifth of a second for a 4 x 4 x 4 lattice.
+/// Rigid at the base: the first shape is turned and scaled about its base so that the two overlap best (eight starts,
+/// then iterated nearest points). Then `P1 = argmin |B P - X|^2 + mu |L P|^2`, with `X` the nearest points in both
+/// directions, B the Bernstein matrix and L second differences, from stiff to soft. Guaranteed: the same result for any
+/// thread count. Not guaranteed: that corresponding parts meet if a shape has no features; the residual measures only
+/// the surfaces. Cost: about a fifth of a second for a 4 x 4 x 4 lattice.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 8 finite points, [`BloomError::Lattice`], [`BloomError::Cancelled`].
@@ -77,9 +77,9 @@ pub fn register(
     fitted((first, last), &from, partners, rigid, spec, run)
 }
 
-/// [`register`] for two organs, of which the first may have been carried elsewhere: points and base are where it is now.
+/// As [`register`], for two organs, of which the first may have been moved: points and base are its current ones.
 ///
-/// Models with the same triangles share their vertices: like places are known, and are not sought.
+/// Models with the same triangles share their vertices: corresponding points are known, and need no search.
 pub(crate) fn register_organ(
     organ: &ScanOrgan,
     (points, base): (&[DVec3], DVec3),
@@ -99,12 +99,12 @@ pub(crate) fn register_organ(
     let (a, b) = (middle(&from), middle(&to));
     let pairs: Vec<(DVec3, DVec3)> = from.iter().zip(&to).map(|(p, q)| (*p - a, *q - b)).collect();
     let moved = Rigid { from: a, to: b, turn: DQuat::IDENTITY, scale: 1.0, rod: rod(&pairs) }.nearest(&pairs);
-    // The base of each by itself is its lowest place, which need not be the same vertex.
+    // The base of each by itself is its lowest point, which need not be the same vertex.
     let rigid = Rigid { from: base, to: moved.apply(base), ..moved };
     fitted((points, &next.points), &from, Partners::Known(&to), rigid, spec, run)
 }
 
-/// Neither shape has so few finite points that nothing can be fitted to it.
+/// Checks that both shapes have enough finite points for a fit.
 fn are_enough<const N: usize>(shapes: [(&str, &[DVec3]); N]) -> Result<(), BloomError> {
     for (what, points) in shapes {
         let is = points.iter().filter(|p| p.is_finite()).count();
@@ -115,19 +115,19 @@ fn are_enough<const N: usize>(shapes: [(&str, &[DVec3]); N]) -> Result<(), Bloom
     Ok(())
 }
 
-/// No shape can be registered by fewer points.
+/// Least number of points of a shape for a registration.
 const FEWEST_POINTS: usize = 8;
 
-/// Where points of the first shape belong in the last.
+/// Partners in the last shape of the points of the first.
 #[derive(Clone, Copy)]
 enum Partners<'a> {
-    /// What is nearest of these, both ways.
+    /// The nearest of these, in both directions.
     Nearest(&'a [DVec3]),
-    /// These, one a point.
+    /// These, one per point.
     Known(&'a [DVec3]),
 }
 
-/// The lattice after the rigid part, and what both leave.
+/// Fits the lattice after the rigid part, and returns the residual of both.
 fn fitted(
     (first, last): (&[DVec3], &[DVec3]),
     from: &[DVec3],
@@ -159,45 +159,47 @@ fn fitted(
     })
 }
 
-/// What the turn of an organ between two scans costs in the comparison of starts.
+/// Penalties on the rotation of an organ between two scans in the comparison of starts.
 struct TurnPrice {
-    /// An organ seldom turns far between two scans: of two that fit alike the lesser turn is meant. A share of the mismatch, a radian.
+    /// Share of the mismatch per radian: an organ seldom turns far between two scans, so of two equal fits the smaller
+    /// rotation wins.
     each: f64,
-    /// Beyond this angle, radians, an organ is rolled over: its upper side lies below.
+    /// Angle, radians, beyond which an organ is rolled over: its upper side faces down.
     rolled: f64,
-    /// How many times better a shape that is rolled over must fit. A petal that opens bends the other way, and so fits better
-    /// rolled over than as it grew, by a factor of up to 3; a shape that was rolled over indeed fits without any mismatch.
+    /// Ratio by which a shape that is rolled over must fit better. A petal that opens reverses its bend, and so fits
+    /// better rolled over than as it grew, by a factor of up to 3; a shape that really was rolled over fits without any
+    /// mismatch.
     rolled_over: f64,
 }
 
 const TURN_PRICE: TurnPrice = TurnPrice { each: 0.35, rolled: 2.1, rolled_over: 5.0 };
 
 impl TurnPrice {
-    fn of(&self, angle: f64) -> f64 {
+    fn factor(&self, angle: f64) -> f64 {
         (1.0 + self.each * angle) * if angle > self.rolled { self.rolled_over } else { 1.0 }
     }
 }
 
-/// Turn and growth about the base.
+/// Rotation and growth about the base.
 #[derive(Clone, Copy, Debug)]
 struct Rigid {
     from: DVec3,
     to: DVec3,
     turn: DQuat,
     scale: f64,
-    /// The direction of a rod: it does not roll, as nothing shows how far.
+    /// Direction of a rod, which does not roll, as that is not observable.
     rod: Option<DVec3>,
 }
 
-/// Below this ratio of the second to the first spread of its points an organ is a rod.
+/// Ratio of the second to the first spread of its points below which an organ is a rod.
 const ROD: f64 = 0.2;
 
-/// Spread of the points across their longest direction as a share of that along it.
+/// Returns the spread of the points across their longest direction as a share of that along it.
 fn slimness(points: &[DVec3]) -> f64 {
     geom::pca3(points).map_or(1.0, |(_, _, [first, second, _])| (second.max(0.0) / first.max(1e-300)).sqrt())
 }
 
-/// The direction of an organ that is a rod before and after.
+/// Returns the direction of an organ that is a rod before and after.
 pub(crate) fn rod(pairs: &[(DVec3, DVec3)]) -> Option<DVec3> {
     let before: Vec<DVec3> = pairs.iter().map(|p| p.0).collect();
     let after: Vec<DVec3> = pairs.iter().map(|p| p.1).collect();
@@ -206,7 +208,7 @@ pub(crate) fn rod(pairs: &[(DVec3, DVec3)]) -> Option<DVec3> {
 }
 
 impl Rigid {
-    /// The turn and growth that bring places nearest to their partners, both from their base.
+    /// Returns the rotation and growth that bring points nearest to their partners, both from their base.
     fn nearest(&self, pairs: &[(DVec3, DVec3)]) -> Self {
         let turn = best_rotation(pairs.iter().copied());
         let turn = match self.rod {
@@ -246,8 +248,8 @@ fn align(
         points.iter().map(|&p| p - base).sum::<DVec3>().try_normalize().unwrap_or(DVec3::Y)
     };
     let (a, b) = (along(from, from_base), along(to, to_base));
-    // The least turn of one direction onto the other, then rolls about it: a petal cannot say its upper side by
-    // its direction alone.
+    // The least rotation of one direction onto the other, then rolls about it: the direction of a petal alone does not
+    // determine its upper side.
     let least = base::turn::between(a, b);
     let rod = (slimness(from) < ROD && slimness(to) < ROD).then_some(a);
     let mut best: Option<(f64, Rigid)> = None;
@@ -259,7 +261,7 @@ fn align(
             rigid = improved(&rigid, &small_from, &small_to, &grid);
         }
         let score = mismatch(&rigid, &small_from, &small_to, &grid);
-        let score = score * TURN_PRICE.of(2.0 * base::ops::acos_clamped(rigid.turn.w.abs()));
+        let score = score * TURN_PRICE.factor(2.0 * base::ops::acos_clamped(rigid.turn.w.abs()));
         if best.as_ref().is_none_or(|(s, _)| score < *s) {
             best = Some((score, rigid));
         }
@@ -352,7 +354,7 @@ fn fit_lattice(
         for (c, s) in a.iter_mut().zip(&stiffness) {
             *c += mu * s;
         }
-        // What no point holds stays where the rigid motion put it.
+        // Control points without data stay where the rigid motion put them.
         for j in 0..n {
             a[j * n + j] += 1e-6 * total / n as f64;
         }
@@ -370,9 +372,9 @@ fn start_at(row: &[f64], start: &Lattice) -> DVec3 {
     row.iter().zip(&start.points).map(|(w, p)| *p * *w).sum()
 }
 
-/// Nearest points both ways: row of the first shape, place in the last one, weight. Far pairs weigh less: they
-/// are holes of a scan (Geman and Mc Clure's weight). Its width falls from 30 times the median to 4 times: at first
-/// a far pair is growth that is still to be followed.
+/// Returns nearest points in both directions: row of the first shape, position in the last one, weight. Far pairs weigh
+/// less: they are holes of a scan (Geman and Mc Clure's weight). Its width falls from 30 times the median to 4 times:
+/// at first a far pair is growth that is still to be followed.
 fn pairs(moved: &[DVec3], to: &[DVec3], grid: &KdTree, share: f64) -> Vec<(usize, DVec3, f64)> {
     let back = KdTree::new(moved);
     let there = moved.iter().enumerate().filter_map(|(i, m)| Some((i, to[grid.nearest(*m, f64::INFINITY)?])));
@@ -389,8 +391,8 @@ fn pairs(moved: &[DVec3], to: &[DVec3], grid: &KdTree, share: f64) -> Vec<(usize
     out
 }
 
-/// L^T L of the second differences along the three axes (which leave affine maps free), and a trace of the
-/// first ones, so that two control points along an axis do not run away.
+/// Returns L^T L of the second differences along the three axes (which leave affine maps free), and a small share of
+/// the first ones, so that two control points along an axis do not diverge.
 fn stiffness(counts: [usize; 3]) -> Vec<f64> {
     let [_, m, n] = counts;
     let total: usize = counts.iter().product();
@@ -412,7 +414,7 @@ fn stiffness(counts: [usize; 3]) -> Vec<f64> {
             }
             if at[axis] + 1 < counts[axis] {
                 add(&[(row, 1.0), (row + step, -1.0)], 1e-3);
-                // Mixed differences: a cell does not shear against its neighbour for nothing.
+                // Mixed differences: they penalise the shear of a cell against its neighbour.
                 for other in axis + 1..3 {
                     if at[other] + 1 < counts[other] {
                         let o = strides[other];
@@ -431,7 +433,7 @@ mod tests {
     use base::ops;
     use std::sync::Arc;
 
-    /// A petal of 60 mm, sampled at places that depend on `seed`.
+    /// Makes a petal of 60 mm, sampled at points that depend on `seed`.
     fn petal(seed: u64, n: usize) -> Vec<DVec3> {
         let mut s = base::Seed::new(seed).stream(base::Draw::Test);
         (0..n)
@@ -469,7 +471,7 @@ mod tests {
         let floor = compare(&last, &truth, &Run::plain()).unwrap();
         assert!(r.residual.to_model.mean < 1.4 * floor.to_model.mean, "{:?} {floor:?}", r.residual);
         assert!(r.residual.to_scan.mean < 1.4 * floor.to_scan.mean, "{:?} {floor:?}", r.residual);
-        // Like parts meet, not only surfaces: the true places of the points are known here.
+        // Corresponding parts meet, not only surfaces: the true positions of the points are known here.
         let weights = Weights::new(&r.obb, [4, 4, 4], &first).unwrap();
         let moved = weights.apply(&r.last, &Run::plain()).unwrap();
         let off: f64 =
@@ -489,8 +491,8 @@ mod tests {
         assert!(r.residual.to_model.mean < 3e-4, "{:?}", r.residual);
     }
 
-    /// A petal bent along its length by `bend` (all of it, radians), its margins raised by `cup`, and leaning by `lean`; nearly its own
-    /// mirror image.
+    /// Makes a petal bent along its length by `bend` (in total, radians), its margins raised by `cup`, and leaning by
+    /// `lean`; nearly its own mirror image.
     fn bent(seed: u64, [bend, cup, lean]: [f64; 3]) -> Vec<DVec3> {
         let mut s = base::Seed::new(seed).stream(base::Draw::Test);
         (0..1200)
@@ -525,7 +527,7 @@ mod tests {
         }
         println!("{rolled} of {all} rolled over");
         assert_eq!(rolled, 0, "of {all}");
-        // One that was scanned upside down is met all the same.
+        // One that was scanned upside down is matched all the same.
         let first = bent(7, [0.8, 0.006, 0.0]);
         let over = base::turn::about(DVec3::Y, ops::PI);
         let last: Vec<DVec3> = first.iter().map(|p| over * *p * 1.1).collect();
@@ -536,7 +538,7 @@ mod tests {
 
     #[test]
     fn models_of_the_same_vertices_are_matched_by_them() {
-        // A round disc tells by its shape nothing of how it was turned in its plane; its vertices do.
+        // The shape of a round disc does not show its rotation in its plane; its vertices do.
         let mut points = vec![DVec3::ZERO];
         let mut faces = Vec::new();
         for ring in 1..=6_u32 {
@@ -566,7 +568,7 @@ mod tests {
         let moved = weights.apply(&r.last, &run).unwrap();
         let off = moved.iter().zip(&last.points).map(|(m, q)| m.distance(*q)).fold(0.0, f64::max);
         assert!(off < 5e-4, "{off}: the lattice bends as a square does");
-        // Of other triangles they are two scans.
+        // With other triangles they are two scans.
         let other = ScanOrgan { faces: Arc::from([[0, 1, 2]]), ..last };
         let r = register_organ(&first, place, &other, &spec, &run).unwrap();
         assert!(r.turn.dot(quarter).abs() < 0.999, "{:?}", r.turn);

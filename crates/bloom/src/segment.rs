@@ -1,4 +1,4 @@
-//! A cleaned plant -> its stem and leaves, each with the way along it.
+//! Segments a cleaned plant into stem and leaves, each with the path along it.
 //!
 //! Distances along the surface from the foot cut the plant into bands; connected pieces of bands make a tree (a
 //! Reeb graph); its branches are organs.
@@ -15,27 +15,27 @@ use crate::BloomError;
 /// One organ of a scan.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScanOrgan {
-    /// `stem`, `leaf-1`, ... or what the user calls it.
+    /// `stem`, `leaf-1`, ... or a name that the user gave.
     pub name: String,
     /// Rows of the organ's points in the cloud it was cut from.
     pub rows: Vec<usize>,
     /// The points, metres.
     pub points: Vec<DVec3>,
-    /// Colours of the points, sRGB bytes; empty or one a point.
+    /// Colours of the points, sRGB bytes; empty or one per point.
     pub colors: Vec<[u8; 3]>,
-    /// Way along the organ from its base, 0 to 1, one a point.
+    /// Position along the organ from its base, 0 to 1, one per point.
     pub way: Vec<f64>,
-    /// Where it sits on its bearer.
+    /// Joint on its bearer.
     pub base: DVec3,
     /// Its farthest place along the surface.
     pub tip: DVec3,
-    /// Of a model the corners of its triangles among the points; else empty. Models of equal triangles have the same vertices in the
-    /// same order, and need not be searched for like places.
+    /// Corners of the triangles among the points, if it is a model; otherwise empty. Models of equal triangles have the
+    /// same vertices in the same order, and need no search for corresponding points.
     pub faces: Arc<[[u32; 3]]>,
 }
 
 impl ScanOrgan {
-    /// With the colours of the cloud that it was cut from; without, if there is not one a point.
+    /// Adds the colours of the cloud that it was cut from; none, if there is not one per point.
     #[must_use]
     pub fn coloured(mut self, colors: &[[u8; 3]]) -> Self {
         let own: Vec<[u8; 3]> = self.rows.iter().filter_map(|&row| colors.get(row).copied()).collect();
@@ -43,12 +43,12 @@ impl ScanOrgan {
         self
     }
 
-    /// Whether each point of this organ is that of the other in the same row.
+    /// Whether points of the same row in both organs correspond.
     pub(crate) fn shares_vertices(&self, other: &Self) -> bool {
         !self.faces.is_empty() && self.points.len() == other.points.len() && self.faces == other.faces
     }
 
-    /// Rows of `points` by region: equal parts of the way from base to tip, base first.
+    /// Returns the rows of `points` by region: equal parts of the path from base to tip, base first.
     pub fn regions(&self, count: usize) -> Vec<Vec<usize>> {
         let count = count.max(1);
         let mut out = vec![Vec::new(); count];
@@ -61,16 +61,17 @@ impl ScanOrgan {
     }
 }
 
-/// How a plant is cut into organs.
+/// Settings of the segmentation of a plant into organs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentSpec {
     /// Upward direction; the foot is the lowest place along it. Default +Y.
     pub up: DVec3,
-    /// Where the plant (or the single organ) is attached; the lowest place if `None`.
+    /// Point of attachment of the plant (or the single organ); the lowest point if `None`.
     pub foot: Option<DVec3>,
-    /// Branches shorter than this share of the longest way are parts of what bears them, 0 to 1. Default 0.06.
+    /// Length of branches, as a share of the longest path, below which they are parts of their bearers, 0 to 1. Default
+    /// 0.06.
     pub least_length: f64,
-    /// Branches with a smaller share of the points are parts of what bears them, 0 to 1. Default 0.004.
+    /// Share of the points below which branches are parts of their bearers, 0 to 1. Default 0.004.
     pub least_points: f64,
 }
 
@@ -80,7 +81,7 @@ impl Default for SegmentSpec {
     }
 }
 
-/// Cubes of a plant with their way from the foot.
+/// Cubes of a plant with their path length from the foot.
 struct Ways {
     voxels: Voxels,
     means: Vec<DVec3>,
@@ -90,11 +91,11 @@ struct Ways {
 
 const NONE: usize = usize::MAX;
 
-/// Cuts a plant into stem and leaves. The stem comes first; leaves follow by size, largest first.
+/// Segments a plant into stem and leaves. The stem comes first; leaves follow by size, largest first.
 ///
-/// Pieces that do not hang together with the foot are bridged over the shortest gap. A stem runs from the foot to
-/// the first fork, and on through forks as long as it stays thin and upright. Guaranteed: every finite point
-/// belongs to exactly one organ. Not guaranteed: organs that touch one another are one. Cost: n log n.
+/// Pieces that are not connected with the foot are bridged over the shortest gap. A stem runs from the foot to the
+/// first fork, and on through forks as long as it stays thin and upright. Guaranteed: every finite point belongs to
+/// exactly one organ. Not guaranteed: that touching organs are separated. Cost: n log n.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points; cancelled.
@@ -114,7 +115,7 @@ pub fn organs(points: &[DVec3], spec: &SegmentSpec, run: &Run<'_>) -> Result<Vec
     Ok(out)
 }
 
-/// Of all organs the one that is nearest to a place: a seed point that a person picked.
+/// Returns the organ nearest to a seed point that a person picked.
 ///
 /// # Errors
 /// As [`organs`].
@@ -131,7 +132,7 @@ pub fn organ_at(
     best.ok_or_else(|| BloomError::TooFew { what: "the scan".into(), is: 0, wanted: 16 })
 }
 
-/// The whole cloud as one organ, such as a petal that was cut out already.
+/// Takes the whole cloud as one organ, such as a petal that was cut out already.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points; cancelled.
@@ -165,7 +166,7 @@ fn ways(points: &[DVec3], spec: &SegmentSpec, cancel: &CancelToken) -> Result<Wa
         Ways { way: vec![f64::INFINITY; means.len()], parent: vec![NONE; means.len()], voxels, means };
     ways.way[foot] = 0.0;
     let mut front = vec![foot];
-    // A scan in more pieces than this is dust, which belongs to what is nearest.
+    // A scan in more pieces than this is dust, which belongs to the nearest piece.
     for _ in 0..200 {
         ways.spread(&front, cancel)?;
         let (reached, lost): (Vec<usize>, Vec<usize>) =
@@ -191,7 +192,7 @@ fn ways(points: &[DVec3], spec: &SegmentSpec, cancel: &CancelToken) -> Result<Wa
 }
 
 impl Ways {
-    /// Dijkstra 1959 from cubes whose way is known.
+    /// Extends paths from cubes whose path length is known (Dijkstra 1959).
     fn spread(&mut self, from: &[usize], cancel: &CancelToken) -> Result<(), Cancelled> {
         let mut heap: BinaryHeap<Step<_>> = from.iter().map(|&c| Step(self.way[c], c)).collect();
         let mut near = Vec::new();
@@ -222,10 +223,10 @@ struct Tree {
     /// The piece below each piece; `NONE` for the first.
     below: Vec<usize>,
     above: Vec<Vec<usize>>,
-    /// Mean place, and root mean square distance from it.
+    /// Mean position, and root mean square distance from it.
     middle: Vec<DVec3>,
     spread: Vec<f64>,
-    /// Of the piece and all above it: points, and the longest way from the piece.
+    /// For the piece and all above it: number of points, and the longest path from the piece.
     points: Vec<usize>,
     reach: Vec<f64>,
     band: f64,
@@ -270,7 +271,7 @@ impl Tree {
                     }
                 });
             }
-            // The cube with the shortest way came from the piece below.
+            // The cube with the shortest path came from the piece below.
             let lowest = members.iter().copied().min_by(|&a, &b| ways.way[a].total_cmp(&ways.way[b]));
             let mut from = lowest.map_or(NONE, |c| ways.parent[c]);
             while from != NONE && tree.piece[from] == mark {
@@ -298,7 +299,7 @@ impl Tree {
         Ok(tree)
     }
 
-    /// 0 for the stem, 1 and on for each organ; one a cube.
+    /// Returns a label per cube: 0 for the stem, 1 and on for each organ.
     fn labels(&self, ways: &Ways, spec: &SegmentSpec) -> Vec<usize> {
         let total: usize = self.points.first().copied().unwrap_or(0);
         let longest = self.reach.first().copied().unwrap_or(0.0);
@@ -348,7 +349,7 @@ impl Tree {
         self.piece.iter().map(|&p| if p == NONE { 0 } else { label[p] }).collect()
     }
 
-    /// Short, or thin and upright and at least three bands long; and it forks again.
+    /// Whether the piece is short, or thin and upright and at least three bands long; and it forks again.
     fn is_internode(
         &self,
         start: usize,
@@ -363,7 +364,7 @@ impl Tree {
             chain.push(only);
             fork = branches(only);
         }
-        // Leaves that part a little later than the others part at the same node.
+        // Leaves that part slightly later than the others part at the same node.
         let longest = self.reach.first().copied().unwrap_or(0.0);
         let last = chain[chain.len() - 1];
         let short = self.middle[last].distance(node) <= 0.1 * longest;
@@ -382,7 +383,7 @@ fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> ScanOrgan
     let mut organ = ScanOrgan::default();
     let tip = cubes.iter().copied().max_by(|&a, &b| ways.way[a].total_cmp(&ways.way[b]));
     organ.tip = tip.map_or(DVec3::ZERO, |c| ways.means[c]);
-    // The base: the mean of the first 4 of 100 of the way.
+    // The base: the mean of the first 4 % of the path.
     let first: Vec<DVec3> =
         cubes.iter().filter(|&&c| ways.way[c] <= low + 0.04 * span).map(|&c| ways.means[c]).collect();
     organ.base = first.iter().sum::<DVec3>() / first.len().max(1) as f64;
@@ -399,12 +400,12 @@ fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> ScanOrgan
     organ
 }
 
-/// Pairs of organs that are the same at two days: rows of `a` and of `b`, each at most once.
+/// Returns pairs of the same organ on two days: rows of `a` and of `b`, each at most once.
 ///
-/// The stem is the stem. A leaf is the one whose direction has turned least (at most 80 degrees), lengths and
-/// shares of the points deciding between near ones. One that has turned far and is of another size, too, is no partner:
-/// an organ that appears or goes is left alone. As pots are turned and stems twist, all leaves may turn
-/// together about `up` by up to 60 degrees, at a price.
+/// The stem matches the stem. A leaf matches the one whose direction has turned least (at most 80 degrees), lengths and
+/// shares of the points deciding between near ones. One that has turned far and is also of another size is no match: an
+/// organ that appears or vanishes stays single. As pots are turned and stems twist, all leaves may turn together about
+/// `up` by up to 60 degrees, at a cost.
 pub fn match_organs(a: &[ScanOrgan], b: &[ScanOrgan], up: DVec3) -> Vec<(usize, usize)> {
     let up = up.try_normalize().unwrap_or(DVec3::Y);
     let mut best: Option<(f64, Vec<(usize, usize)>)> = None;
@@ -419,7 +420,7 @@ pub fn match_organs(a: &[ScanOrgan], b: &[ScanOrgan], up: DVec3) -> Vec<(usize, 
     best.map_or_else(Vec::new, |b| b.1)
 }
 
-/// The pairs if all leaves turned by `angle`, and what they cost; an organ without partner costs 1.
+/// Returns the pairs if all leaves turned by `angle`, and their cost; an organ without partner costs 1.
 fn match_turned(a: &[ScanOrgan], b: &[ScanOrgan], up: DVec3, angle: f64) -> (f64, Vec<(usize, usize)>) {
     let turn = base::turn::about(up, angle);
     let direction = |o: &ScanOrgan| {
@@ -466,7 +467,7 @@ mod tests {
     use super::*;
     use base::{Draw, Seed, ops};
 
-    /// A stem of 30 mm with three leaves at azimuths 0, 120 and 240 degrees; how many points each.
+    /// Makes a stem of 30 mm with three leaves at azimuths 0, 120 and 240 degrees; also returns the numbers of points.
     fn seedling(lengths: [f64; 3]) -> (Vec<DVec3>, Vec<usize>) {
         let mut s = Seed::new(2).stream(Draw::Test);
         let mut points = Vec::new();

@@ -31,7 +31,7 @@ species![
     "water-lily"
 ];
 
-/// A flower by name, one of [`FlowerSpec::PRESETS`].
+/// Returns a flower by name, one of [`FlowerSpec::PRESETS`].
 ///
 /// ```
 /// assert!(bloom::preset("lily").is_some() && bloom::preset("oak").is_none());
@@ -43,7 +43,7 @@ pub fn preset(name: &str) -> Option<FlowerSpec> {
     spec.ok()
 }
 
-/// The file of a flower, as it comes with the program.
+/// Returns the file of a flower, as it comes with the program.
 pub fn preset_text(name: &str) -> Option<&'static str> {
     let row = FlowerSpec::PRESETS.iter().position(|p| *p == name)?;
     FILES.get(row).copied()
@@ -61,10 +61,10 @@ mod tests {
             let spec = preset(name).unwrap();
             let law = spec.own_law();
             let mut worst = 0.0_f64;
-            let first = spec.at(0.0, &law, Seed::new(1));
+            let first = spec.make_on_day(0.0, &law, Seed::new(1));
             for k in 0..=12 {
                 let day = (spec.opening_days + spec.wilting_days) * f64::from(k) / 12.0;
-                let flower = spec.at(day, &law, Seed::new(1));
+                let flower = spec.make_on_day(day, &law, Seed::new(1));
                 assert_eq!(flower.validate().count(), 0, "{name} at {day}");
                 assert_eq!(flower.axes, first.axes, "{name}");
                 let kept = |p: &plant::Plant| -> Vec<_> {
@@ -85,7 +85,7 @@ mod tests {
             let spec = preset(name).unwrap();
             let law = spec.own_law();
             let width = |day: f64| {
-                let flower = spec.at(day, &law, Seed::new(1));
+                let flower = spec.make_on_day(day, &law, Seed::new(1));
                 let corners: Vec<_> = flower.shapes.iter().map(|s| s.corners(1.0)).collect();
                 let across = flower
                     .organs

@@ -1,13 +1,14 @@
-//! How often chance gives as much.
+//! Tails of the distribution of F.
 
 use base::ops;
 
-/// The share of the distribution of F beyond `f`, for degrees of freedom above and below.
+/// Returns the share of the distribution of F beyond `f`, for degrees of freedom above and below.
 pub(crate) fn tail_of_f(f: f64, [above, below]: [f64; 2]) -> f64 {
     incomplete_beta(0.5 * below, 0.5 * above, below / (below + above * f.max(0.0)))
 }
 
-/// The regularised incomplete beta function, by its continued fraction (Lentz 1976; Press et al. 2007, section 6.4).
+/// Returns the regularised incomplete beta function, by its continued fraction (Lentz 1976; Press et al. 2007, section
+/// 6.4).
 fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
     if x <= 0.0 || x >= 1.0 {
         return if x >= 1.0 { 1.0 } else { 0.0 };
@@ -42,7 +43,7 @@ fn fraction(a: f64, b: f64, x: f64) -> f64 {
     h
 }
 
-/// The logarithm of the gamma function of a positive number (Lanczos 1964).
+/// Returns the logarithm of the gamma function of a positive number (Lanczos 1964).
 fn ln_gamma(x: f64) -> f64 {
     const G: [f64; 6] = [
         76.180_091_729_471_46,

@@ -1,18 +1,19 @@
-//! Many points -> few, evenly spread.
+//! Thins many points to few, evenly spread ones.
 
 use geom::{cubes, extent};
 use glam::DVec3;
 
-/// Indices of at most about `wanted` points, one a cube, so that a dense part weighs no more than a sparse one.
+/// Returns the indices of at most about `wanted` points, one per cube, so that a dense part weighs no more than a
+/// sparse one.
 ///
-/// Of a cube the point nearest to the mean of the cube's points is kept. All finite points if they are few.
+/// In each cube the point nearest to the mean of the cube's points is kept. All finite points if they are few.
 pub(crate) fn thin(points: &[DVec3], wanted: usize) -> Vec<u32> {
     let size = extent(points);
     if size <= 0.0 || points.iter().filter(|p| p.is_finite()).count() <= wanted {
         #[expect(clippy::cast_possible_truncation, reason = "indices are below 2^32 points")]
         return (0..points.len()).filter(|&i| points[i].is_finite()).map(|i| i as u32).collect();
     }
-    // The search needs counts only: on at most 50,000 points it is quick, and such a sample fills the cubes.
+    // The search needs counts only: on at most 50,000 points it is fast, and such a sample fills the cubes.
     let sample: Vec<DVec3> = points.iter().copied().step_by(points.len().div_ceil(50_000)).collect();
     let (mut low, mut high) = (size / 4096.0, size);
     for _ in 0..24 {

@@ -1,4 +1,4 @@
-//! Each stage left out in turn -> how far the model and its rivals are from it.
+//! Leaves each stage out in turn, and measures the distance of the model and its rivals from it.
 
 use base::{CancelToken, Run};
 use geom::{KdTree, best_rotation};
@@ -10,16 +10,16 @@ use crate::{
     Stage, Weights, compare, fit_stages, name_alike, settle,
 };
 
-/// A way to say what a day looks like.
+/// A method of predicting the shape on a day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rival {
-    /// The law where the other days determine one, pose apart: what `bloom run` makes.
+    /// The law if the other days determine one, with the pose separated: the method of `bloom run`.
     Model,
-    /// The same at an even pace, pose not taken apart.
+    /// The same at an even pace, with the pose not separated.
     NoLaw,
     /// The scan of the nearest other day, unchanged.
     NearestDay,
-    /// Straight lines between the two days round it after the best rigid move of one onto the other.
+    /// Straight lines between the two days around it after the best rigid move of one onto the other.
     Linear,
 }
 
@@ -27,7 +27,7 @@ impl Rival {
     /// All, the model first.
     pub const ALL: [Self; 4] = [Self::Model, Self::NoLaw, Self::NearestDay, Self::Linear];
 
-    /// The words of tables and reports.
+    /// Returns the words used in tables and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Model => "model",
@@ -38,14 +38,14 @@ impl Rival {
     }
 }
 
-/// One way's distances from the scan that was left out.
+/// Distances of one method from the left-out scan.
 #[derive(Clone, Copy, Debug)]
 pub struct TrialRow {
-    /// Which.
+    /// The method.
     pub rival: Rival,
     /// After the best rigid move of the made shape onto the scan.
     pub aligned: ShapeError,
-    /// As it stands, in the coordinates of the scanner.
+    /// Without a move, in the coordinates of the scanner.
     pub scanner: ShapeError,
 }
 
@@ -54,20 +54,20 @@ pub struct TrialRow {
 pub struct Trial {
     /// The day, in the count of the stages.
     pub day: f64,
-    /// It is the first or the last: the others lie on one side of it.
+    /// Whether it is the first or the last: all others lie on one side of it.
     pub extrapolated: bool,
-    /// Some law was determined by the other days.
+    /// Whether some law was determined by the other days.
     pub law: bool,
     /// One row for each of [`Rival::ALL`], in that order.
     pub rows: Vec<TrialRow>,
 }
 
-/// Leaves each stage out in turn. Nothing of the stage that is left out takes part in anything but the last measurement.
+/// Leaves each stage out in turn. The left-out stage takes part only in the last measurement.
 ///
-/// `up`: organs carry the names that [`name_alike`] found from stage to stage, this way up. Then names that were found by way of
-/// the stage that is left out are found anew. None: they were given by hand.
+/// `up`: organs carry the names that [`name_alike`] found from stage to stage, this way up. Then names that were found
+/// through the left-out stage are found again. `None`: they were given by hand.
 ///
-/// Below 3 stages there is nothing to leave out: the answer is empty. Cost: some registrations of each organ a day.
+/// Below 3 stages there is nothing to leave out: the result is empty. Cost: some registrations of each organ per day.
 ///
 /// # Errors
 /// As [`settle`] and [`crate::Motion::new`].
@@ -139,8 +139,9 @@ fn trial(
     Ok(Trial { day, extrapolated, law: determined, rows })
 }
 
-/// The points of the nearer of the two days round `day`, on straight lines to their places on the other day after the rigid
-/// move of that one which brings all places nearest to where they were; of an end day those of the nearest day, moved on as far.
+/// Moves the points of the nearer of the two days around `day` on straight lines to their positions on the other day,
+/// after the rigid move of that one which brings all points nearest to their former positions; at an end day the points
+/// of the nearest day move on by as much.
 fn straight(
     rest: &[Stage],
     [i, j]: [usize; 2],
@@ -175,14 +176,14 @@ fn straight(
     Ok(out)
 }
 
-/// Points of each shape that the best rigid move is sought with: first, and at the end.
+/// Points of each shape in the search for the best rigid move: first, and at the end.
 const SAMPLES: [usize; 2] = [800, 3000];
-/// Rounds of nearest points, at most.
+/// Most rounds of iterated nearest points.
 const ROUNDS: usize = 60;
 
-/// The rigid motion of `shape` that brings the two nearest to one another: least mean distance both ways of those that
-/// iterated nearest points reach from no motion and from seven turns about the vertical, weighted by 1 over the distance so that what the other
-/// shape has not does not pull.
+/// Returns the rigid motion of `shape` that brings the two nearest to one another: least mean distance in both
+/// directions among those that iterated nearest points reach from no motion and from seven rotations about the
+/// vertical, weighted by 1 over the distance so that parts that the other shape lacks do not pull.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] if a shape has no finite point, [`BloomError::Cancelled`].
@@ -202,7 +203,7 @@ pub fn best_move(shape: &[DVec3], scan: &[DVec3], run: &Run<'_>) -> Result<Rigid
         base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k], ROUNDS, run.cancel));
     run.cancel.check()?;
     base::sort_by(&mut found, |x, y| x.0.total_cmp(&y.0));
-    // Of starts that are nearly as good the small sample cannot say which is best.
+    // The small sample cannot rank nearly equal starts.
     found.truncate(3);
     let all = Pair::new(shape, scan, SAMPLES[1]);
     let ends = base::map_indexed(run.executor, found.len(), |k| all.descend(found[k].1, ROUNDS, run.cancel));
@@ -217,13 +218,13 @@ pub(crate) struct Pair {
     to: Vec<DVec3>,
     middles: [DVec3; 2],
     tree: KdTree,
-    /// Root mean square distance of the second from its middle.
+    /// Root mean square distance of the second from its centre.
     size: f64,
 }
 
 impl Pair {
     pub(crate) fn new(shape: &[DVec3], scan: &[DVec3], sample: usize) -> Self {
-        // By rank: a sample has the density of what it is of, as the mean distance does.
+        // By rank: a sample has the density of its original, as the mean distance does.
         let pick = |points: &[DVec3]| -> Vec<DVec3> {
             let finite = || points.iter().copied().filter(|p| p.is_finite());
             finite().step_by(finite().count().div_ceil(sample).max(1)).collect()
@@ -236,7 +237,7 @@ impl Pair {
         Self { tree: KdTree::new(&to), from, to, middles, size }
     }
 
-    /// The mean distances there and back, added, after a motion.
+    /// Returns the sum of the mean distances there and back, after a motion.
     pub(crate) fn gap(&self, moved: &RigidMotion) -> f64 {
         let places: Vec<DVec3> = self.from.iter().map(|&p| moved.apply(p)).collect();
         let back = KdTree::new(&places);
@@ -247,8 +248,8 @@ impl Pair {
         mean(&self.tree, &self.to, &places) + mean(&back, &places, &self.to)
     }
 
-    /// Iterated nearest points both ways: the mean distances there and back, added, and the motion. Of a run that was
-    /// cancelled the motion so far, which is worth nothing.
+    /// Iterates nearest points in both directions; returns the sum of the mean distances there and back, and the
+    /// motion. A cancelled run returns the motion so far, which is meaningless.
     pub(crate) fn descend(
         &self,
         mut moved: RigidMotion,
@@ -274,7 +275,7 @@ impl Pair {
                 for &(i, j) in &list {
                     let d = places[i].distance(self.to[j]);
                     gap += d / list.len() as f64;
-                    // Both ways weigh alike, however many points a shape has.
+                    // Both directions have equal weight, however many points a shape has.
                     pairs.push((self.from[i], self.to[j], 1.0 / ((d + floor) * list.len() as f64)));
                 }
             }

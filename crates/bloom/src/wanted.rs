@@ -1,4 +1,4 @@
-//! What can be asked of a flower.
+//! Settings of a flower.
 
 use base::{Budget, Counted, OverBudget, ops};
 use schemars::JsonSchema;
@@ -8,7 +8,8 @@ use crate::law::GrowthLaw;
 use crate::parts::{Achenes, Cluster, Disc, Foliage, Fruit, Nods, Stamens};
 use crate::whorl::Whorl;
 
-/// A flower that opens. Saved as TOML; the species that come with the program are such files ([`preset`](crate::preset)).
+/// A flower that opens. Saved as TOML; the species that come with the program are such files
+/// ([`preset`](crate::preset)).
 ///
 /// ```
 /// let text = "name = \"star\"\nstalk_m = 0.1\n[[whorls]]\ncount = 5\nlength_m = 0.03";
@@ -31,7 +32,7 @@ pub struct FlowerSpec {
     /// Radius of its style, metres, 0 to 0.05; 0, the default, for one that fits its length.
     #[schemars(range(min = 0.0, max = 0.05), extend("x-unit" = "m"))]
     pub pistil_radius_m: f64,
-    /// How much of the style falls as the fruit grows, 0 to 1, default 0.
+    /// Share of the style that falls as the fruit grows, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub pistil_shed: f64,
     /// Linear colour of the pistil.
@@ -40,16 +41,17 @@ pub struct FlowerSpec {
     /// Radius of a disc of florets, metres; 0, the default, for none.
     #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
     pub disc_m: f64,
-    /// How the disc looks.
+    /// Appearance of the disc.
     pub disc: Disc,
-    /// The ovary and what grows of it; default none.
+    /// The ovary and the fruit that grows from it; default none.
     pub fruit: Fruit,
     /// Fruits with a parachute each, as dandelions have; default none.
     pub achenes: Achenes,
-    /// Share of the wilting in which the fruit ripens, 0 to 0.9, default 0: it ends with petals withered.
+    /// Share of the wilting in which the fruit ripens, 0 to 0.9, default 0: the flower ends with withered petals.
     #[schemars(range(min = 0.0, max = 0.9))]
     pub ripening: f64,
-    /// Length of the stalk, metres, 0 to 5, default 0.25; 0 for a flower without one, such as one that is put on a plant.
+    /// Length of the stalk, metres, 0 to 5, default 0.25; 0 for a flower without one, such as one that is put on a
+    /// plant.
     #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
     pub stalk_m: f64,
     /// Radius of the stalk, metres, 0 to 0.1; 0, the default, for one that fits the flower.
@@ -61,14 +63,14 @@ pub struct FlowerSpec {
     /// Angle by which the open flower nods, degrees, 0 to 120, default 0.
     #[schemars(range(min = 0.0, max = 120.0), extend("x-unit" = "deg"))]
     pub nod_deg: f64,
-    /// How far bud and wilted flower nod beside the open one.
+    /// Nodding of bud and wilted flower relative to the open one.
     pub nods: Nods,
     /// Flowers of an umbel or another cluster, 1 to 200; 1, the default, for a single flower.
     #[schemars(range(min = 1, max = 200))]
     pub umbel: u32,
-    /// How the flowers of a cluster stand.
+    /// Arrangement of the flowers of a cluster.
     pub cluster: Cluster,
-    /// Its leaves, a kind after the other.
+    /// Its leaves, one kind after the other.
     pub leaves: Vec<Foliage>,
     /// Days from bud to full bloom, 0.1 to 60, default 6.
     #[schemars(range(min = 0.1, max = 60.0), extend("x-unit" = "d"))]
@@ -79,13 +81,13 @@ pub struct FlowerSpec {
     /// Rate of the flower's own growth law, per day, 0.01 to 100, default 0.95.
     #[schemars(range(min = 0.01, max = 100.0))]
     pub rate_per_day: f64,
-    /// How fine a petal is meshed.
+    /// Resolution of the mesh of a petal.
     pub mesh: PetalMesh,
 }
 
 spec::schemas!(FlowerSpec = include_str!("../schemas/flower.json"));
 
-/// How fine a petal is meshed.
+/// Resolution of the mesh of a petal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PetalMesh {
@@ -98,7 +100,7 @@ pub struct PetalMesh {
 }
 
 impl Default for FlowerSpec {
-    /// A stalk without petals.
+    /// Returns a stalk without petals.
     fn default() -> Self {
         Self {
             name: "flower".into(),
@@ -129,16 +131,16 @@ impl Default for FlowerSpec {
     }
 }
 
-/// Of stalks, linear.
+/// Colour of stalks, linear.
 const STALK: [f32; 3] = [0.16, 0.32, 0.07];
 
-/// Degrees to radians.
+/// Converts degrees to radians.
 pub(crate) fn rad(d: f64) -> f64 {
     d * (ops::PI / 180.0)
 }
 
 impl FlowerSpec {
-    /// Days from bud to full bloom, and from there to wilted.
+    /// Returns the days from bud to full bloom, and from there to wilted.
     pub const fn days(&self) -> [f64; 2] {
         [self.opening_days, self.wilting_days]
     }
@@ -155,7 +157,7 @@ impl FlowerSpec {
         budget.check(Counted::Triangles, all, "lower count, rings, umbel or mesh")
     }
 
-    /// The growth law of the species itself.
+    /// Returns the growth law of the species itself.
     pub fn own_law(&self) -> GrowthLaw {
         GrowthLaw::logistic(&self.name, self.opening_days, self.rate_per_day)
     }

@@ -1,4 +1,4 @@
-//! A ring of petals as it is asked for: numbers, form, angles, colours, how its bud is folded and how it ends.
+//! Settings of a ring of petals: numbers, form, angles, colours, aestivation and fate.
 
 use base::ops;
 use glam::DVec2;
@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Whorl {
-    /// Petals, 1 to 200, default 6.
+    /// Number of petals, 1 to 200, default 6.
     #[schemars(range(min = 1, max = 200))]
     pub count: u32,
-    /// Rings of as many petals, one within the other, 1 to 20, default 1.
+    /// Rings with this number of petals, one within the other, 1 to 20, default 1.
     #[schemars(range(min = 1, max = 20))]
     pub rings: u32,
     /// The innermost of several rings.
@@ -32,21 +32,21 @@ pub struct Whorl {
     /// Share of the petal that is as narrow as its base (a clawed petal), 0 to 0.7, default 0.
     #[schemars(range(min = 0.0, max = 0.7))]
     pub claw_length: f64,
-    /// How pointed the tip is: 1 is a point, 0 is round; default 0.5.
+    /// Pointedness of the tip: 1 is a point, 0 is round; default 0.5.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub point: f64,
     /// Depth of a notch in the tip, as a share of the length, 0 to 0.5, default 0.
     #[schemars(range(min = 0.0, max = 0.5))]
     pub notch: f64,
-    /// How deeply the margin is fringed, 0 to 1, default 0.
+    /// Depth of the fringe of the margin, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub fringe: f64,
-    /// How far the margins rise towards the axis of the flower, as a share of half the width, -1 to 1, default 0.
+    /// Rise of the margins towards the axis of the flower, as a share of half the width, -1 to 1, default 0.
     #[schemars(range(min = -1.0, max = 1.0))]
     pub cup: f64,
-    /// Where petals are inserted.
+    /// Insertion of the petals.
     pub insertion: Insertion,
-    /// How petals lie in the bud.
+    /// Arrangement of the petals in the bud.
     pub aestivation: Aestivation,
     /// Turn of the tips about the axis in the bud, degrees, default 0.
     #[schemars(range(min = -720.0, max = 720.0), extend("x-unit" = "deg"))]
@@ -60,38 +60,39 @@ pub struct Whorl {
     /// Angle to the axis at base, middle and tip when wilted, degrees.
     #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
     pub wilted_deg: [f64; 3],
-    /// Angle to the axis at base, middle and tip when the fruit is ripe, degrees: of a flower that has `ripening`.
+    /// Angle to the axis at base, middle and tip when the fruit is ripe, degrees: for a flower with `ripening`.
     #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
     pub ripe_deg: [f64; 3],
-    /// How far it goes from the wilted to the ripe angles, 0 to 1, default 0.
+    /// Share of the way from the wilted to the ripe angles, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub ripens: f64,
-    /// Days that the whorl opens later than the first, as a share of the opening, 0 to 0.9, default 0.
+    /// Delay of the opening of the whorl, as a share of the opening, 0 to 0.9, default 0.
     #[schemars(range(min = 0.0, max = 0.9))]
     pub delay: f64,
-    /// How much later the last petal of the ring opens than the first, as a share of the opening, 0 to 0.6, default 0.
-    /// Petals of a `contorted` or `fused` ring open together.
+    /// Delay of the last petal of the ring after the first, as a share of the opening, 0 to 0.6, default 0. Petals of a
+    /// `contorted` or `fused` ring open together.
     #[schemars(range(min = 0.0, max = 0.6))]
     pub succession: f64,
     /// Turn of the whorl about the axis, degrees, default 0.
     #[schemars(range(min = -360.0, max = 3600.0), extend("x-unit" = "deg"))]
     pub phase_deg: f64,
-    /// Angle from one petal to the next, degrees, 0 to 360; 0, the default, for evenly round the axis.
+    /// Angle from one petal to the next, degrees, 0 to 360; 0, the default, for evenly around the axis.
     #[schemars(range(min = 0.0, max = 360.0), extend("x-unit" = "deg"))]
     pub spacing_deg: f64,
     /// Lean within the whorl: distance of one edge to the other across the petal, metres, default 0.002. In an
     /// `imbricate` ring: from one petal to the next within it.
     #[schemars(range(min = -1.0, max = 1.0), extend("x-unit" = "m"))]
     pub lean_m: f64,
-    /// How strongly petals are waved in bloom and crumpled when withered, 0 to 3, default 1.
+    /// Strength of the waves of petals in bloom and of their crumpling when withered, 0 to 3, default 1.
     #[schemars(range(min = 0.0, max = 3.0))]
     pub crumple: f64,
-    /// How much smaller withered petals are, 0 not at all to 1, default 1: a quarter shorter, nearly half as wide.
+    /// Shrinking of withered petals, 0 not at all to 1, default 1: a quarter shorter, nearly half as wide.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub shrivel: f64,
-    /// What becomes of petals in the end.
+    /// Fate of the petals at the end.
     pub fate: Fate,
-    /// When the first of them falls, -1 to 0.9, default 0.3: -1 is the bud, 0 full bloom, 1 the end of wilting.
+    /// Time at which the first of them falls, -1 to 0.9, default 0.3: -1 is the bud, 0 full bloom, 1 the end of
+    /// wilting.
     #[schemars(range(min = -1.0, max = 0.9))]
     pub falls: f64,
     /// Linear colour at the base: shares of red, green and blue light.
@@ -100,57 +101,57 @@ pub struct Whorl {
     /// Linear colour at the tip.
     #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub tip_color: [f32; 3],
-    /// Linear colour that petals go to as the days pass after full bloom.
+    /// Linear colour that petals take as the days pass after full bloom.
     #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub aged_color: [f32; 3],
-    /// How far they go to it, 0 to 1, default 0.
+    /// Share of that colour, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub aging: f64,
     /// A mark that guides visitors to the nectar.
     pub guide: Guide,
-    /// How green the bud still is, 0 to 1, default 0.
+    /// Greenness of the bud, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub green: f64,
-    /// Sepals or bracts: they keep their form when petals are replaced. Default false.
+    /// Whether they are sepals or bracts, which keep their form when petals are replaced. Default false.
     pub sepal: bool,
-    /// The petal's own outline, drawn or measured; without one it is made of the shares above. Not saved.
+    /// The petal's own outline, drawn or measured; without one it is computed from the shares above. Not saved.
     #[serde(skip)]
     pub form: Option<PetalForm>,
 }
 
-/// The innermost of several rings, beside the outermost; those between go evenly.
+/// The innermost of several rings, relative to the outermost; the rings between are interpolated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Innermost {
-    /// Its petals' size as a share, 0.05 to 2, default 1.
+    /// Size of its petals as a share, 0.05 to 2, default 1.
     #[schemars(range(min = 0.05, max = 2.0))]
     pub size: f64,
-    /// How far it opens and wilts from the bud, as a share, 0 to 1, default 1.
+    /// Share by which it opens and wilts from the bud, 0 to 1, default 1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub open: f64,
     /// Distance from the axis as a share, 0 to 1, default 0.7.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub radius: f64,
-    /// How much higher it is inserted, metres, 0 to 1, default 0.002.
+    /// Additional height of its insertion, metres, 0 to 1, default 0.002.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "m"))]
     pub height_m: f64,
-    /// How much later it opens, as a share of the opening, 0 to 0.6, default 0.
+    /// Delay of its opening, as a share of the opening, 0 to 0.6, default 0.
     #[schemars(range(min = 0.0, max = 0.6))]
     pub delay: f64,
 }
 
 impl Default for Innermost {
-    /// Like the outermost, a little within it.
+    /// Returns one like the outermost, slightly within it.
     fn default() -> Self {
         Self { size: 1.0, open: 1.0, radius: 0.7, height_m: 0.002, delay: 0.0 }
     }
 }
 
-/// How the petals of a ring lie in the bud.
+/// Arrangement of the petals of a ring in the bud.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aestivation {
-    /// Each with one edge over and one under its neighbours.
+    /// Each has one edge over and one under its neighbours.
     #[default]
     Contorted,
     /// One within the other along a spiral, the outermost first: of five, two lie outside and two inside (quincuncial).
@@ -161,16 +162,16 @@ pub enum Aestivation {
     Fused,
 }
 
-/// What becomes of petals in the end.
+/// Fate of the petals at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fate {
-    /// They wither where they are.
+    /// They wither in place.
     #[default]
     Cling,
     /// They fall, one after another, and lie on the ground.
     Drop,
-    /// They fall and are gone: of flowers high above the ground.
+    /// They fall and disappear: for flowers high above the ground.
     Gone,
 }
 
@@ -181,30 +182,30 @@ pub struct Guide {
     /// Its linear colour.
     #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub color: [f32; 3],
-    /// How far it reaches from the base along the petal, 0 to 1; 0, the default, for none.
+    /// Reach from the base along the petal, 0 to 1; 0, the default, for none.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub reach: f64,
-    /// How wide it is across the petal, 0 to 1, default 1.
+    /// Width across the petal, 0 to 1, default 1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub width: f64,
-    /// How strong, 0 to 1, default 1.
+    /// Strength, 0 to 1, default 1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub strength: f64,
-    /// Lines that it is made of, 0 to 9; 0, the default, for a blotch.
+    /// Number of lines, 0 to 9; 0, the default, for a blotch.
     #[schemars(range(min = 0, max = 9))]
     pub lines: u32,
 }
 
 impl Default for Guide {
-    /// None.
+    /// Returns settings that draw no guide.
     fn default() -> Self {
         Self { color: [0.8; 3], reach: 0.0, width: 1.0, strength: 1.0, lines: 0 }
     }
 }
 
 impl Guide {
-    /// How much of it there is at a place, 0 to 1.
-    pub(crate) fn at(&self, u: f64, v: f64) -> f64 {
+    /// Returns its strength at a place, 0 to 1.
+    pub(crate) fn strength_at(&self, u: f64, v: f64) -> f64 {
         if self.reach <= 0.0 {
             return 0.0;
         }
@@ -223,7 +224,7 @@ impl Guide {
     }
 }
 
-/// Where the petals of a whorl are inserted.
+/// Insertion of the petals of a whorl.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Insertion {
@@ -236,7 +237,7 @@ pub struct Insertion {
 }
 
 impl Default for Whorl {
-    /// Six slender petals of 5 cm.
+    /// Returns six slender petals of 5 cm.
     fn default() -> Self {
         Self {
             count: 6,
@@ -281,7 +282,7 @@ impl Default for Whorl {
 }
 
 impl Whorl {
-    /// Its rings, outermost first, each as a whorl of one ring.
+    /// Returns one of its rings, outermost first, as a whorl of one ring.
     pub(crate) fn ring(&self, ring: u32) -> Self {
         let t = if self.rings > 1 { f64::from(ring) / f64::from(self.rings - 1) } else { 0.0 };
         let Innermost { size, open, radius, height_m, delay } = self.innermost;
@@ -302,14 +303,14 @@ impl Whorl {
             open_deg: towards(self.open_deg),
             wilted_deg: towards(self.wilted_deg),
             delay: (self.delay + delay * t).min(0.9),
-            // The golden share of the way to the next petal: no ring stands behind one before it.
+            // The golden share of the way to the next petal: no ring stands behind an earlier one.
             phase_deg: self.phase_deg + f64::from(ring) * 0.618 * 360.0 / f64::from(self.count.max(1)),
             falls: ops::lerp(self.falls, 0.5 * (self.falls + 0.9), 0.6 * t),
             ..*self
         }
     }
 
-    /// The azimuth from one petal to the next, radians.
+    /// Returns the azimuth from one petal to the next, radians.
     pub(crate) fn apart(&self) -> f64 {
         if self.spacing_deg > 0.0 {
             self.spacing_deg * (ops::PI / 180.0)
@@ -318,16 +319,16 @@ impl Whorl {
         }
     }
 
-    /// The least azimuth between two neighbours, radians.
+    /// Returns the least azimuth between two neighbours, radians.
     pub(crate) fn narrowest(&self) -> f64 {
         let gap = ops::TAU - self.apart() * f64::from(self.count.max(1) - 1);
         if gap > 0.0 { gap.min(self.apart()) } else { self.apart() }
     }
 
-    /// The place of petal `k` in the order in which they stand on the axis, outermost first.
+    /// Returns the rank of petal `k` in the order in which they stand on the axis, outermost first.
     pub(crate) fn rank(&self, k: u32) -> u32 {
         let n = self.count.max(1);
-        // Two fifths of a turn and its kin: the step nearest to the golden one that meets every petal.
+        // Two fifths of a turn and similar fractions: the step nearest to the golden one that reaches every petal.
         let golden = (f64::from(n) * 0.382).round();
         let step = (1..n)
             .filter(|&s| coprime(s, n))
@@ -336,7 +337,7 @@ impl Whorl {
         (0..n).find(|r| (r * step) % n == k % n).unwrap_or(0)
     }
 
-    /// Half width at `v` as a share of the greatest.
+    /// Returns the half width at `v` as a share of the greatest.
     pub(crate) fn outline(&self, v: f64) -> f64 {
         if let Some(form) = &self.form {
             return form.half_width(v).max(0.02);
@@ -354,7 +355,8 @@ impl Whorl {
         }
     }
 
-    /// The place along the petal of column `u` in row `v`: a notch draws the middle back, and rounds its lobes.
+    /// Returns the position along the petal of column `u` in row `v`: a notch draws the middle back, and rounds its
+    /// lobes.
     pub(crate) fn place(&self, u: f64, v: f64) -> f64 {
         if self.notch <= 0.0 {
             return v;
@@ -385,8 +387,8 @@ const fn coprime(mut a: u32, mut b: u32) -> bool {
 pub struct PetalForm(pub [f64; 17]);
 
 impl PetalForm {
-    /// From an outline with its root at the origin and its tip on +y; also its width as a share of its length.
-    /// None for an outline without area.
+    /// Makes a form from an outline with its root at the origin and its tip on +y; also returns its width as a share of
+    /// its length. `None` for an outline without area.
     pub fn of_outline(outline: &[DVec2]) -> Option<(Self, f64)> {
         let tip = outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
         let sound = tip.is_finite() && tip > 0.0 && outline.len() >= 3;
@@ -403,20 +405,20 @@ impl PetalForm {
             }
             (high - low).max(0.0)
         };
-        // A little inside the ends, where an outline is one point.
+        // Slightly inside the ends, where an outline is a single point.
         let widths: [f64; 17] = core::array::from_fn(|k| width(tip * (0.004 + 0.992 * k as f64 / 16.0)));
         let widest = widths.iter().copied().fold(0.0, f64::max);
         let aspect = widest / tip;
         (aspect.is_finite() && aspect > 0.01).then(|| (Self(widths.map(|w| w / widest)), aspect))
     }
 
-    /// The mean of several.
+    /// Returns the mean of several forms.
     pub fn mean(forms: &[Self]) -> Option<Self> {
         let n = forms.len() as f64;
         (n > 0.0).then(|| Self(core::array::from_fn(|k| forms.iter().map(|f| f.0[k]).sum::<f64>() / n)))
     }
 
-    /// Half the width at `v`, 0 at the base to 1 at the tip, as a share of the greatest.
+    /// Returns half the width at `v`, 0 at the base to 1 at the tip, as a share of the greatest.
     pub fn half_width(&self, v: f64) -> f64 {
         let at = v.clamp(0.0, 1.0) * 16.0;
         let low = at.floor().min(15.0);

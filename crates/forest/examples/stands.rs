@@ -1,7 +1,8 @@
-//! How fast stands grow, and how true they are: `cargo run --release --example stands -p burgeon-forest [speed | truth FOLDER]`.
+//! Measures how fast stands grow, and how realistic they are: `cargo run --release --example stands -p burgeon-forest
+//! [speed | truth FOLDER]`.
 //!
-//! `speed` lets forests of 10,000 to a million trees grow for 50 years on two threads, and says what that took. `truth` draws
-//! the plots of `docs/forests.md` into a folder.
+//! `speed` lets forests of 10,000 to a million trees grow for 50 years on two threads, and reports time and memory.
+//! `truth` draws the plots of `docs/forests.md` into a folder.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -18,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 }
 
-/// Two threads that take the next job each.
+/// Two threads, each of which takes the next job.
 struct TwoThreads;
 
 impl Executor for TwoThreads {
@@ -40,8 +41,8 @@ impl Executor for TwoThreads {
     }
 }
 
-/// Seconds on the processor of all threads of this process, and the most memory that it has had in MiB; 0 where the system
-/// does not tell.
+/// Returns the processor time of all threads of this process in seconds, and its peak memory in MiB; 0 if the system
+/// does not report them.
 fn used() -> (f64, u64) {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
@@ -133,7 +134,7 @@ fn truth(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
 
 type Named = (&'static str, &'static str, GrownStand);
 
-/// A plot with axes: where numbers lie on the paper.
+/// A plot with axes, and the mapping from numbers to the paper.
 struct Plot {
     svg: String,
     x: [f64; 2],
@@ -152,8 +153,8 @@ impl Plot {
         );
         let mut plot = Self { svg: String::new(), x, y, legend: MARGIN[2] + 16.0 };
         for &(v, label) in ticks[0] {
-            let [px, py] = plot.at(v, y[0]);
-            let top = plot.at(v, y[1])[1];
+            let [px, py] = plot.position(v, y[0]);
+            let top = plot.position(v, y[1])[1];
             let _ = writeln!(
                 svg,
                 "<path d=\"M{px:.1} {py:.1}V{top:.1}\" stroke=\"#ddd\"/><text x=\"{px:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
@@ -161,8 +162,8 @@ impl Plot {
             );
         }
         for &(v, label) in ticks[1] {
-            let [px, py] = plot.at(x[0], v);
-            let right = plot.at(x[1], v)[0];
+            let [px, py] = plot.position(x[0], v);
+            let right = plot.position(x[1], v)[0];
             let _ = writeln!(
                 svg,
                 "<path d=\"M{px:.1} {py:.1}H{right:.1}\" stroke=\"#ddd\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
@@ -187,7 +188,7 @@ impl Plot {
         plot
     }
 
-    fn at(&self, x: f64, y: f64) -> [f64; 2] {
+    fn position(&self, x: f64, y: f64) -> [f64; 2] {
         let share = |v: f64, [low, high]: [f64; 2]| (v - low) / (high - low);
         [
             MARGIN[0] + share(x, self.x) * (SIZE[0] - MARGIN[0] - MARGIN[1]),
@@ -197,7 +198,7 @@ impl Plot {
 
     fn line(&mut self, points: &[[f64; 2]], colour: &str, dashes: &str, name: &str) {
         let path: Vec<String> =
-            points.iter().map(|p| self.at(p[0], p[1])).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+            points.iter().map(|p| self.position(p[0], p[1])).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         let _ = writeln!(
             self.svg,
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-dasharray=\"{dashes}\"/>",
@@ -214,7 +215,7 @@ impl Plot {
     }
 
     fn band(&mut self, low: [f64; 2], high: [f64; 2], name: &str) {
-        let ([x0, y0], [x1, y1]) = (self.at(low[0], high[1]), self.at(high[0], low[1]));
+        let ([x0, y0], [x1, y1]) = (self.position(low[0], high[1]), self.position(high[0], low[1]));
         let _ = writeln!(
             self.svg,
             "<rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#c26a1b\" opacity=\"0.15\"/><text x=\"{:.1}\" y=\"{:.1}\" fill=\"#8a4a10\">{name}</text>",

@@ -1,4 +1,4 @@
-//! Height, stem, crown and age of a species: each from each, with the interval in which nineteen of twenty trees lie.
+//! Height, stem, crown and age of a species, each from the others, with the interval of nineteen trees in twenty.
 //!
 //! `name -> Allometry; measured figures -> all figures with intervals`
 
@@ -6,16 +6,18 @@ use base::ops;
 
 /// Height above the foot at which stems are measured, metres.
 pub const BREAST_M: f64 = 1.3;
-/// Half the width of an interval that holds 95 % of a normal distribution, in its deviations.
+/// Half the width of an interval that holds 95 % of a normal distribution, in standard deviations.
 const DEVIATIONS_95: f64 = 1.96;
-/// The exponent of the growth curve of the diameter; a little above 1: growth is slow for the first years alone.
+/// Exponent of the growth curve of the diameter, a little above 1: only the first years have slow growth.
 const CURVE: f64 = 1.3;
-/// The share of the height or diameter of the oldest trees that an inverse is taken up to: beyond, every age is as likely.
+/// Largest share of the height or diameter of the oldest trees for which an inverse is computed: beyond it, every age
+/// is equally likely.
 const ALMOST: f64 = 0.98;
-/// Crowns in closed stands cover an area in proportion to this power of the diameter (Sitch et al. 2003, after Zeide 1993).
+/// Crowns in closed stands cover an area in proportion to this power of the diameter (Sitch et al. 2003, after Zeide
+/// 1993).
 const COVER_POWER: f64 = 1.6;
 
-/// What the forms of growth of species have in common.
+/// Growth form that several species share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FunctionalGroup {
     /// Trees with broad leaves.
@@ -24,15 +26,15 @@ pub enum FunctionalGroup {
     Conifer,
     /// Palms and tree ferns, whose stems hardly thicken.
     Palm,
-    /// Shrubs, climbers, succulents and bamboos: no one trunk to measure.
+    /// Shrubs, climbers, succulents and bamboos, which have no single trunk to measure.
     Shrub,
     /// Herbs and grasses.
     Herb,
 }
 
 impl FunctionalGroup {
-    /// Deviation of the logarithm of height about the curve. By stands and free-standing trees, which differ by a factor of
-    /// two at one diameter.
+    /// Returns the standard deviation of the logarithm of height about the curve. It follows from stands and
+    /// free-standing trees, which differ by a factor of two at one diameter.
     const fn height_deviation(self) -> f64 {
         match self {
             Self::Broadleaf | Self::Conifer => 0.2,
@@ -41,7 +43,7 @@ impl FunctionalGroup {
         }
     }
 
-    /// Deviation of the logarithm of age about the curve: sites differ more than species.
+    /// Returns the standard deviation of the logarithm of age about the curve: sites differ more than species.
     const fn age_deviation(self) -> f64 {
         match self {
             Self::Broadleaf | Self::Conifer => 0.4,
@@ -49,7 +51,7 @@ impl FunctionalGroup {
         }
     }
 
-    /// Years that a plant takes to the height at which stems are measured.
+    /// Returns the years that a plant needs to reach breast height.
     const fn years_to_breast(self) -> f64 {
         match self {
             Self::Broadleaf => 4.0,
@@ -59,7 +61,7 @@ impl FunctionalGroup {
         }
     }
 
-    /// Square metres of ground under the crown of a tree of one metre of diameter in a closed stand.
+    /// Returns the square metres of ground under the crown of a tree of one metre of diameter in a closed stand.
     const fn cover_m2(self) -> f64 {
         match self {
             Self::Broadleaf => 230.0,
@@ -75,13 +77,13 @@ impl FunctionalGroup {
 pub(crate) struct Crown {
     pub(crate) b0: f64,
     pub(crate) b1: f64,
-    /// Of the residuals of the logarithm.
+    /// Variance of the residuals of the logarithm.
     pub(crate) variance: f64,
-    /// Hasenauer (1997); otherwise the same form with figures chosen by us.
+    /// The equation is from Hasenauer (1997); otherwise it has the same form with figures chosen by us.
     pub(crate) is_published: bool,
 }
 
-/// What has a trunk to measure.
+/// Stem of a species with a trunk to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stem {
     pub(crate) thick_m: f64,
@@ -91,22 +93,22 @@ pub(crate) struct Stem {
     pub(crate) crown: Crown,
 }
 
-/// Among what a tree grows.
+/// Surroundings of a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Setting {
-    /// Streets, parks, orchards: crowns to the sides, stout stems.
+    /// Streets, parks, orchards: crowns spread to the sides, and stems are stout.
     #[default]
     Free,
-    /// A closed stand: high and slender.
+    /// A closed stand: trees are high and slender.
     Stand,
 }
 
 base::words!(Setting { Free = "free", Stand = "stand" });
 
-/// A value with the interval in which nineteen of twenty trees lie.
+/// A value with the interval of nineteen trees in twenty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Predicted {
-    /// The middle of the distribution, by its logarithm.
+    /// Middle of the distribution of its logarithm.
     pub value: f64,
     /// The low end of the interval.
     pub low: f64,
@@ -121,29 +123,29 @@ impl Predicted {
     }
 }
 
-/// Measures of one tree; none where it was not measured.
+/// Measures of one tree; none if not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// Metres, above 0.
+    /// Height, metres, above 0.
     pub height_m: Option<f64>,
-    /// Metres, above 0.
+    /// Diameter at breast height, metres, above 0.
     pub dbh_m: Option<f64>,
-    /// Metres, above 0.
+    /// Width of the crown, metres, above 0.
     pub crown_width_m: Option<f64>,
-    /// Years, 0 and more.
+    /// Age, years, 0 and more.
     pub age_years: Option<f64>,
 }
 
-/// All figures of one tree: those that were measured as they were, with an interval of no width.
+/// All figures of one tree: measured ones are unchanged and have an interval of width 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// Metres.
+    /// Height, metres.
     pub height_m: Predicted,
-    /// Metres; 0 for trees below 1.3 m and plants without a trunk.
+    /// Diameter at breast height, metres; 0 for trees below 1.3 m and plants without a trunk.
     pub dbh_m: Predicted,
-    /// Metres.
+    /// Width of the crown, metres.
     pub crown_width_m: Predicted,
-    /// Years.
+    /// Age, years.
     pub age_years: Predicted,
 }
 
@@ -156,8 +158,9 @@ pub struct Figures {
 /// | diameter ~ age | `d = thick (1 - exp(-k t))^1.3` (Richards 1959) |
 /// | ground cover ~ diameter in stands | `a = c d^1.6` (Sitch et al. 2003) |
 ///
-/// Height, age and cover are general forms with figures of our own, from what floras say of old trees, and have wide
-/// intervals. Crowns are published for spruce, larch, pine, beech, oak, ash, maple and other broadleaves of Central Europe.
+/// Height, age and cover are general forms with figures of our own, based on what floras report of old trees, and
+/// have wide intervals. Crowns are published for spruce, larch, pine, beech, oak, ash, maple and other broadleaves of
+/// Central Europe.
 ///
 /// ```
 /// use forest::{Allometry, Measured, Setting};
@@ -181,34 +184,34 @@ pub struct Allometry {
     pub top_m: f64,
     pub(crate) stem: Option<Stem>,
     pub(crate) width_of_height: f64,
-    /// Light demand: 0 grows in deep shade, 1 in full light alone.
+    /// Light demand: 0 grows in deep shade, 1 only in full light.
     pub light: f64,
-    /// Years that one plant in a hundred lives.
+    /// Age that one plant in a hundred reaches, years.
     pub life_years: f64,
     /// Mean distance from a plant to its seedlings, metres.
     pub spread_m: f64,
 }
 
 impl Allometry {
-    /// Whether the crown's relation is a published one for this species or its kind.
+    /// Returns whether the crown's relation is published for this species or its kind.
     pub fn has_published_crown(&self) -> bool {
         self.stem.is_some_and(|stem| stem.crown.is_published)
     }
 
-    /// Whether it has a trunk to measure.
+    /// Returns whether it has a trunk to measure.
     pub const fn has_trunk(&self) -> bool {
         self.stem.is_some()
     }
 
-    /// Metres of height at a diameter in metres.
+    /// Returns the height in metres for a diameter in metres.
     pub fn height_m(&self, dbh_m: f64, setting: Setting) -> f64 {
         let Some(stem) = self.stem else { return self.top_m };
         let room = self.top_m - BREAST_M;
         BREAST_M + room * (1.0 - ops::exp(-stem.slope(setting) * dbh_m.max(0.0) / room))
     }
 
-    /// Metres of diameter at a height in metres: the inverse of [`height_m`](Self::height_m), up to almost the height of old
-    /// trees; 0 below 1.3 m.
+    /// Returns the diameter in metres for a height in metres: the inverse of [`height_m`](Self::height_m), up to
+    /// almost the height of old trees; 0 below 1.3 m.
     pub fn dbh_m(&self, height_m: f64, setting: Setting) -> f64 {
         let Some(stem) = self.stem else { return 0.0 };
         let room = self.top_m - BREAST_M;
@@ -216,10 +219,10 @@ impl Allometry {
         -room / stem.slope(setting) * ops::ln(1.0 - share)
     }
 
-    /// Metres across the crown of a free-standing tree of a diameter in metres and a height in metres.
+    /// Returns the width in metres of the crown of a free-standing tree, for its diameter and height in metres.
     pub fn crown_width_m(&self, dbh_m: f64, height_m: f64) -> f64 {
         let Some(stem) = self.stem else { return self.width_of_height * height_m };
-        // A sapling is not as wide as it is high.
+        // A sapling is narrower than high.
         let least = SAPLING * height_m;
         if dbh_m <= 0.0 {
             return least;
@@ -227,24 +230,24 @@ impl Allometry {
         ops::exp(stem.crown.b0 + stem.crown.b1 * ops::ln(100.0 * dbh_m)).max(least)
     }
 
-    /// Metres across the crown of a tree in a closed stand: never wider than a free-standing one.
+    /// Returns the width in metres of the crown of a tree in a closed stand: at most that of a free-standing one.
     pub fn stand_crown_width_m(&self, dbh_m: f64, height_m: f64) -> f64 {
         let free = self.crown_width_m(dbh_m, height_m);
         if self.stem.is_none() || dbh_m <= 0.0 {
             return free;
         }
-        // The diameter to half the power is the width of a disc of that area.
+        // The diameter to half the power gives the width of a disc of that area.
         let width = 2.0 * (self.group.cover_m2() / ops::PI).sqrt() * ops::powf(dbh_m, 0.5 * COVER_POWER);
         width.min(free)
     }
 
-    /// The rate of the growth curve of the diameter, one a year.
+    /// Returns the rate of the growth curve of the diameter, per year.
     fn rate(stem: &Stem) -> f64 {
         let share = (stem.dbh_50_m / stem.thick_m).min(ALMOST);
         -ops::ln(1.0 - ops::powf(share, 1.0 / CURVE)) / 50.0
     }
 
-    /// Years at a diameter in metres of a free-standing tree, from its germination on.
+    /// Returns the age in years, from germination, of a free-standing tree of a diameter in metres.
     pub fn age_years(&self, dbh_m: f64, height_m: f64) -> f64 {
         let Some(stem) = self.stem else {
             return -ops::ln(1.0 - (height_m / self.top_m).clamp(0.0, ALMOST)) * self.life_years / 4.0;
@@ -257,7 +260,8 @@ impl Allometry {
         to_breast - ops::ln(1.0 - share) / Self::rate(&stem)
     }
 
-    /// Metres of diameter of a free-standing tree of an age in years: the inverse of [`age_years`](Self::age_years).
+    /// Returns the diameter in metres of a free-standing tree at an age in years: the inverse of
+    /// [`age_years`](Self::age_years).
     pub fn dbh_at_age_m(&self, age_years: f64) -> f64 {
         let Some(stem) = self.stem else { return 0.0 };
         let years = age_years - self.group.years_to_breast();
@@ -267,7 +271,7 @@ impl Allometry {
         stem.thick_m * ops::powf(1.0 - ops::exp(-Self::rate(&stem) * years), CURVE)
     }
 
-    /// Metres of diameter some years after one in metres, as free-standing trees grow.
+    /// Returns the diameter in metres after some years of growth as a free-standing tree.
     pub(crate) fn dbh_after_m(&self, dbh_m: f64, years: f64) -> f64 {
         let Some(stem) = self.stem else { return 0.0 };
         let share = ops::powf((dbh_m / stem.thick_m).min(1.0), 1.0 / CURVE);
@@ -276,12 +280,12 @@ impl Allometry {
         (stem.thick_m * ops::powf(1.0 - left, CURVE)).max(dbh_m)
     }
 
-    /// Metres of height for each metre of diameter of a young stem.
+    /// Returns the height per diameter of a young stem, metres per metre.
     pub(crate) fn slope(&self, setting: Setting) -> f64 {
         self.stem.map_or(0.0, |stem| stem.slope(setting))
     }
 
-    /// Metres of height of a plant of an age in years and the diameter that goes with it.
+    /// Returns the height in metres of a plant at an age in years, with the diameter for that age.
     fn height_at_age_m(&self, age_years: f64, dbh_m: f64, setting: Setting) -> f64 {
         if self.stem.is_none() {
             return (self.top_m * (1.0 - ops::exp(-4.0 * age_years / self.life_years))).max(LOWEST_M);
@@ -293,11 +297,11 @@ impl Allometry {
         self.height_m(dbh_m, setting)
     }
 
-    /// All figures of a tree from those that were measured, which stay as they are. Of a tree without any, those of a
-    /// third of its life, at most 40 years.
+    /// Computes all figures of a tree from those that were measured, which stay as they are. A tree without any gets
+    /// those of a third of its life, at most 40 years.
     ///
-    /// The diameter follows from the height, else from the crown, else from the age; the others follow from the diameter.
-    /// Intervals hold 95 % of the trees of the species about the relation, and widen where one is inverted.
+    /// The diameter follows from the height, else from the crown, else from the age; the others follow from the
+    /// diameter. Intervals hold 95 % of the trees of the species about the relation, and widen where one is inverted.
     pub fn fill(&self, measured: &Measured, setting: Setting) -> Figures {
         let exact = |value| Predicted { value, low: value, high: value };
         let group = self.group;
@@ -327,11 +331,11 @@ impl Allometry {
         Figures { height_m: height, dbh_m: dbh, crown_width_m: crown, age_years: age }
     }
 
-    /// The diameter that follows from what was measured, and the deviation of its logarithm.
+    /// Returns the diameter from the measured figures, and the standard deviation of its logarithm.
     fn stem_of(&self, measured: &Measured, setting: Setting) -> (f64, f64) {
         let Some(stem) = self.stem else { return (0.0, 0.0) };
         let group = self.group;
-        // An inverse widens: the height levels off while the diameter goes on.
+        // An inverse has a wider interval: the height levels off while the diameter grows on.
         const INVERSE: f64 = 1.5;
         match *measured {
             Measured { dbh_m: Some(dbh), .. } => (dbh, 0.0),
@@ -347,17 +351,17 @@ impl Allometry {
         }
     }
 
-    /// The age that a tree without any figure is given.
+    /// Returns the age that is assumed for a tree without any figure.
     fn typical_age_years(&self) -> f64 {
         (self.life_years / 3.0).min(40.0)
     }
 }
 
-/// Crown widths of saplings, of their heights.
+/// Crown width of saplings, as a share of their height.
 const SAPLING: f64 = 0.3;
-/// The least height that a plant is given, metres.
+/// Least height of a plant, metres.
 const LOWEST_M: f64 = 0.05;
-/// Deviation of the logarithm of the width of what has no trunk.
+/// Standard deviation of the logarithm of the width of plants without a trunk.
 const WIDTH_DEVIATION: f64 = 0.4;
 
 impl Stem {

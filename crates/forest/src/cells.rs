@@ -1,8 +1,9 @@
-//! Points on the ground by square cells, for neighbours: sorted, so that it takes what lies far apart.
+//! Points on the ground by square cells, for finding neighbours: sorted, so that memory does not depend on the
+//! distances.
 
 use glam::DVec2;
 
-/// Points by the cells that they lie in.
+/// Points by the cells in which they lie.
 #[derive(Debug)]
 pub(crate) struct SortedCells {
     side: f64,
@@ -10,23 +11,25 @@ pub(crate) struct SortedCells {
     rows: Vec<(u64, u32)>,
 }
 
-/// So that cells on both sides of the origin have keys in order.
+/// Offset of coordinates, so that cells on both sides of the origin have keys in order.
 const MIDDLE: i64 = 1 << 31;
 
 impl SortedCells {
-    /// Cost: n log n. `side`: above 0. Points must be finite, and no more than 2^31 sides from the origin.
+    /// Sorts points into cells. Cost: n log n. `side`: above 0. Points must be finite, and at most 2^31 sides from
+    /// the origin.
     pub(crate) fn new(points: impl Iterator<Item = DVec2>, side: f64) -> Self {
         let mut rows: Vec<(u64, u32)> = (0..).zip(points).map(|(i, p)| (key(p, side), i)).collect();
         rows.sort_unstable();
         Self { side, rows }
     }
 
-    /// Cells with their points.
+    /// Returns the cells with their points.
     pub(crate) fn cells(&self) -> impl Iterator<Item = &[(u64, u32)]> {
         self.rows.chunk_by(|a, b| a.0 == b.0)
     }
 
-    /// Points in the cells that are at most `ring` cells away from that of `p`: all that lie within `ring` sides.
+    /// Returns the points in the cells that are at most `ring` cells away from that of `p`, among them all within
+    /// `ring` sides.
     pub(crate) fn near(&self, p: DVec2, ring: i64) -> impl Iterator<Item = u32> + '_ {
         let (x, y) = cell(p, self.side);
         (y - ring..=y + ring).flat_map(move |row| {

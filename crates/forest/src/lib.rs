@@ -1,4 +1,4 @@
-//! Stands of trees: one row for each tree, and where its figures come from.
+//! Stands of trees: one row for each tree, with the origin of its figures.
 //!
 //! | module | owns |
 //! |---|---|

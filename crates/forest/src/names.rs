@@ -5,12 +5,12 @@ use core::fmt;
 use crate::Allometry;
 use crate::species::SPECIES;
 
-/// A species by its name.
+/// A species found by its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoundSpecies {
     /// Its relations.
     pub allometry: &'static Allometry,
-    /// Only the genus is known: it is another species of it.
+    /// Only the genus is known: the species is another one of it.
     pub by_genus: bool,
 }
 
@@ -19,7 +19,7 @@ pub struct FoundSpecies {
 pub struct UnknownSpecies {
     /// The name.
     pub name: String,
-    /// The known name that is nearest, if one is near.
+    /// The nearest known name, if one is near.
     pub nearest: Option<&'static str>,
 }
 
@@ -39,7 +39,7 @@ base::coded!(UnknownSpecies {
     Self { name, nearest } => "species-unknown" { name, nearest = nearest.unwrap_or_default() },
 });
 
-/// A name in lower case, without cultivar, authors' brackets and marks of hybrids, with single spaces.
+/// Returns a name in lower case, without cultivar, authors' brackets and marks of hybrids, with single spaces.
 fn plain(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
     let (mut quoted, mut depth) = (false, 0_u32);
@@ -57,18 +57,18 @@ fn plain(name: &str) -> String {
     out.split_whitespace().filter(|word| *word != "x").collect::<Vec<_>>().join(" ")
 }
 
-/// Most characters of a name that are looked at.
+/// Most characters of a name that are read.
 const LONGEST_NAME: usize = 200;
 
 impl Allometry {
-    /// All species, in order of their presets' words.
+    /// Returns all species, in order of their presets' words.
     pub const fn all() -> &'static [Self] {
         SPECIES
     }
 
-    /// The species of a preset's word, a scientific or a common name. Upper case, cultivars, authors, hyphens and the marks
-    /// of hybrids make no difference. A scientific name of which only the genus is known stands for the first species of it,
-    /// and says so.
+    /// Finds the species of a preset's word, a scientific or a common name. Upper case, cultivars, authors, hyphens
+    /// and the marks of hybrids make no difference. A scientific name with only a known genus gives the first species
+    /// of the genus, and a mark in the result.
     ///
     /// Cost: linear in the species; some microseconds.
     ///
@@ -81,7 +81,7 @@ impl Allometry {
             return Ok(FoundSpecies { allometry, by_genus: false });
         }
         let wanted = plain(&short);
-        // The oak comes before the oaks by other methods, and before the dead one.
+        // The plain oak comes before the oaks of other models, and before the dead one.
         let rank = |s: &&Self| u8::from(s.preset.contains("oak") && s.preset != "oak");
         let named = |s: &&Self| plain(s.latin) == wanted || s.names.iter().any(|n| plain(n) == wanted);
         if let Some(allometry) = SPECIES.iter().filter(named).min_by_key(rank) {
@@ -102,7 +102,7 @@ impl Allometry {
         let is_slip = nearest.is_some_and(|n| plain(n).split(' ').next() == Some(genus));
         let of_genus = |s: &&Self| plain(s.latin).split(' ').next() == Some(genus);
         match SPECIES.iter().filter(of_genus).min_by_key(rank) {
-            // A slip of the hand in the second word is no other species.
+            // A typing error in the second word does not make another species.
             Some(allometry) if !is_slip || epithet == "sp." || epithet == "spp." => {
                 Ok(FoundSpecies { allometry, by_genus: true })
             }
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn every_tree_preset_has_a_row() {
         let folder = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studio/presets");
-        // A package by itself has no presets beside it.
+        // The package alone has no folder of presets.
         let Ok(entries) = std::fs::read_dir(folder) else { return };
         for entry in entries.filter_map(Result::ok) {
             let word = entry.file_name().to_string_lossy().trim_end_matches(".toml").to_owned();

@@ -3,24 +3,27 @@
 use base::ops;
 use glam::DVec2;
 
-/// Semi-major axis and flattening of WGS 84.
+/// Semi-major axis of WGS 84, metres.
 const MAJOR_M: f64 = 6_378_137.0;
+/// Flattening of WGS 84.
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Scale on the central meridian of a UTM zone.
 const UTM_SCALE: f64 = 0.9996;
+/// Easting of the central meridian of a UTM zone, metres.
 const UTM_EAST_M: f64 = 500_000.0;
+/// Northing of the equator in the zones of the southern hemisphere, metres.
 const UTM_SOUTH_M: f64 = 10_000_000.0;
 
-/// A plane that touches or cuts the earth along a meridian (Krueger 1912, in the form of Karney 2011, to the fourth power of
-/// the third flattening): exact to less than a millimetre within 3,000 km of the meridian.
+/// A plane that touches or cuts the earth along a meridian (Krueger 1912, in the form of Karney 2011, to the fourth
+/// power of the third flattening): exact to less than a millimetre within 3,000 km of the meridian.
 ///
-/// Distances on the plane are longer than on the ground by the square of the distance from the meridian, in radii of the
-/// earth, by two: by 1 in 100,000 at 28 km, by 1 in 1,000 at 285 km.
+/// Distances on the plane exceed those on the ground by half the square of the distance from the meridian in radii of
+/// the earth: by 1 in 100,000 at 28 km, by 1 in 1,000 at 285 km.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Plane {
     meridian_deg: f64,
     scale: f64,
-    /// Taken from northings and eastings.
+    /// Origin, subtracted from eastings and northings.
     origin: DVec2,
 }
 
@@ -39,27 +42,27 @@ fn cosh(x: f64) -> f64 {
 }
 
 impl Plane {
-    /// The plane that touches the earth along the meridian of a place, which is its origin.
+    /// Returns the plane that touches the earth along the meridian of a place, which is its origin.
     pub(crate) fn local(lon_deg: f64, lat_deg: f64) -> Self {
         let plane = Self { meridian_deg: lon_deg, scale: 1.0, origin: DVec2::ZERO };
         Self { origin: plane.metres(lon_deg, lat_deg), ..plane }
     }
 
-    /// A zone of the Universal Transverse Mercator grid, 1 to 60.
+    /// Returns a zone of the Universal Transverse Mercator grid, 1 to 60.
     pub(crate) fn utm(zone: u8, is_south: bool) -> Self {
         let meridian_deg = 6.0 * f64::from(zone) - 183.0;
         let north = if is_south { -UTM_SOUTH_M } else { 0.0 };
         Self { meridian_deg, scale: UTM_SCALE, origin: DVec2::new(-UTM_EAST_M, north) }
     }
 
-    /// The zone that a longitude lies in.
+    /// Returns the zone of a longitude.
     pub(crate) fn utm_zone(lon_deg: f64) -> u8 {
         #[expect(clippy::cast_possible_truncation, reason = "1 to 60")]
         let zone = ops::whole(((lon_deg + 180.0) / 6.0).clamp(0.0, 59.0)) as u8;
         zone + 1
     }
 
-    /// Easting and northing of a place.
+    /// Returns easting and northing of a place.
     pub(crate) fn metres(&self, lon_deg: f64, lat_deg: f64) -> DVec2 {
         let n = FLATTENING / (2.0 - FLATTENING);
         let (n2, n3, n4) = (n * n, n * n * n, n * n * n * n);
@@ -88,7 +91,8 @@ impl Plane {
     }
 }
 
-/// A quarter of the earth away from the meridian nothing has a place on the plane: next to it, far away.
+/// Limit that keeps places a quarter of the earth away from the meridian finite: they have none on the plane, and
+/// land far away.
 const FARTHEST: f64 = 1.0 - 1e-15;
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
-//! What is asked of a stand that grows.
+//! Specs of stands that grow.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How trees are placed at first.
+/// Initial placement of the trees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum PlantingPattern {
-    /// By chance, kinds with short seed spread in groups.
+    /// Random; species with a short seed spread form groups.
     #[default]
     Natural,
-    /// In rows, as orchards and plantations; the density of the stand does not count.
+    /// In rows, as in orchards and plantations; the density of the stand is ignored.
     Rows {
         /// Distance in the row, metres, 0.1 to 1000.
         #[schemars(range(min = 0.1, max = 1000.0), extend("x-unit" = "m"))]
@@ -22,14 +22,14 @@ pub enum PlantingPattern {
         #[serde(default)]
         #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg"))]
         angle_deg: f64,
-        /// How far trees stand from their place in the row, metres, 0 to 100, default 0.
+        /// Greatest distance of trees from their place in the row, metres, 0 to 100, default 0.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
         jitter_m: f64,
     },
 }
 
-/// One species of a stand. What is not given is that of the species.
+/// One species of a stand. Missing values are those of the species.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SpeciesSpec {
@@ -44,22 +44,22 @@ pub struct SpeciesSpec {
     /// Least distance from a placed tree to another, metres, 0 to 100, default 0.3.
     #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
     pub spacing_m: f64,
-    /// Light demand, 0 (grows in deep shade) to 1 (in full light alone). Default that of the species.
+    /// Light demand, 0 (grows in deep shade) to 1 (only in full light). Default that of the species.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub light: Option<f64>,
     /// Mean distance from a tree to its seedlings, metres, 0.1 to 10,000. Default that of the species.
     #[schemars(range(min = 0.1, max = 10_000.0), extend("x-unit" = "m"))]
     pub seed_spread_m: Option<f64>,
-    /// Seedlings of a grown tree that live to 1.3 m, one a year in full light, 0 to 10, default 0.02.
+    /// Seedlings per year of a grown tree in full light that live to reach 1.3 m, 0 to 10, default 0.02.
     #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "1/a"))]
     pub seedlings: f64,
-    /// Least and greatest slope on which it likes to stand, degrees; rare outside. Default any.
+    /// Least and greatest slope that it prefers, degrees; rare outside. Default any.
     #[schemars(inner(range(min = 0.0, max = 90.0)), extend("x-unit" = "deg"))]
     pub slope_deg: Option<[f64; 2]>,
-    /// Least and greatest height of the ground on which it likes to stand, metres; rare outside. Default any.
+    /// Least and greatest height of the ground that it prefers, metres; rare outside. Default any.
     #[schemars(inner(range(min = -1e4, max = 1e4)), extend("x-unit" = "m"))]
     pub height_m: Option<[f64; 2]>,
-    /// Least and greatest distance from water at which it likes to stand, metres; rare outside. Default any.
+    /// Least and greatest distance from water that it prefers, metres; rare outside. Default any.
     #[schemars(inner(range(min = 0.0, max = 1e6)), extend("x-unit" = "m"))]
     pub water_m: Option<[f64; 2]>,
 }
@@ -81,7 +81,7 @@ impl Default for SpeciesSpec {
     }
 }
 
-/// Water, which trees keep out of and may like to be near to.
+/// Water, in which no tree stands; species may prefer to be near it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
@@ -94,16 +94,16 @@ pub struct Water {
     pub width_m: Option<f64>,
 }
 
-/// The ground that a stand grows on. Files are named relative to the spec.
+/// Ground of a stand. File names are relative to the spec.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GroundSpec {
     /// The plane y = 0.
     #[default]
     Flat,
-    /// A picture of 16 bits of grey, its middle at the origin.
+    /// A picture of 16 bits of grey, with its centre at the origin.
     Png {
-        /// Its name.
+        /// Name of the file.
         file: String,
         /// Side of a cell, metres, above 0, at most 10,000.
         #[schemars(range(max = 10_000.0), extend("exclusiveMinimum" = 0.0, "x-unit" = "m"))]
@@ -119,14 +119,14 @@ pub enum GroundSpec {
         #[serde(default)]
         no_data: Option<u16>,
     },
-    /// A GeoTIFF of heights in metres, in a projection in metres, its middle at the origin.
+    /// A GeoTIFF of heights in metres, in a projection in metres, with its centre at the origin.
     Geotiff {
-        /// Its name.
+        /// Name of the file.
         file: String,
     },
     /// A model in metres, +Y up.
     Mesh {
-        /// Its name.
+        /// Name of the file.
         file: String,
     },
 }
@@ -135,16 +135,16 @@ pub enum GroundSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MaskSpec {
-    /// Its name, relative to the spec.
+    /// Name of the file, relative to the spec.
     pub file: String,
-    /// Black lets trees stand, and white keeps them out. Default false.
+    /// Whether black admits trees, and white keeps them out. Default false.
     pub inverted: bool,
-    /// The species that it is about, by the name that the stand gives it. Default all.
+    /// The species to which it applies, by its name in the stand. Default all.
     pub species: Option<String>,
 }
 
-/// A stand: species on a piece of ground, and the years that they grow in competition. Metres, degrees, years; +X east, +Y
-/// up, +Z south. Saved as TOML.
+/// A stand: species on a piece of ground, and the years that they grow in competition. Metres, degrees, years; +X
+/// east, +Y up, +Z south. Saved as TOML.
 ///
 /// ```
 /// let spec: forest::ForestSpec = spec::from_toml(
@@ -157,12 +157,12 @@ pub struct MaskSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ForestSpec {
-    /// For files and reports.
+    /// Name for files and reports.
     pub name: String,
-    /// One line about it.
+    /// Description in one line.
     pub about: String,
-    /// Width from west to east and depth from north to south, metres, 1 to 200,000, default 100 by 100. The middle is the
-    /// origin.
+    /// Width from west to east and depth from north to south, metres, 1 to 200,000, default 100 by 100. The centre is
+    /// the origin.
     #[schemars(inner(range(min = 1.0, max = 200_000.0)), extend("x-unit" = "m"))]
     pub area_m: [f64; 2],
     /// Corners of the stand within the area, x and z in metres. Default none: the whole area.
@@ -174,20 +174,20 @@ pub struct ForestSpec {
     /// Years of one step of growth, 1 to 20, default 5: with shorter steps, the same forest takes longer.
     #[schemars(range(min = 1, max = 20), extend("x-unit" = "a"))]
     pub step_years: u32,
-    /// Trees that are placed, one a hectare, 0.01 to 200,000, default 1500.
+    /// Number of trees that are placed per hectare, 0.01 to 200,000, default 1500.
     #[schemars(range(min = 0.01, max = 200_000.0), extend("x-unit" = "1/ha"))]
     pub density_ha: f64,
-    /// How they are placed. Default by chance.
+    /// Initial placement. Default random.
     pub pattern: PlantingPattern,
     /// Growth relative to a good site, 0.1 to 3, default 1.
     #[schemars(range(min = 0.1, max = 3.0))]
     pub site: f64,
-    /// How much trunks lean with slopes: 0 upright, 1 square to the ground. 0 to 1, default 0.1.
+    /// Lean of trunks on slopes: 0 upright, 1 square to the ground. 0 to 1, default 0.1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub lean: f64,
     /// The species, at least one.
     pub species: Vec<SpeciesSpec>,
-    /// Polygons that trees keep out of, x and z in metres: buildings, roads, clearings.
+    /// Polygons without trees, x and z in metres: buildings, roads, clearings.
     #[schemars(extend("x-unit" = "m"))]
     pub keep_out: Vec<Vec<[f64; 2]>>,
     /// Rivers and lakes.

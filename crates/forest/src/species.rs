@@ -15,7 +15,7 @@
 
 use crate::allometry::{Allometry, Crown, FunctionalGroup, Stem};
 
-/// A row for a tree.
+/// Defines a row for a tree.
 macro_rules! tree {
     ($preset:literal, $latin:literal, [$($name:literal),*], $group:ident, top $top:literal, thick $thick:literal,
      free $free:literal, stand $stand:literal, dbh_50 $dbh_50:literal, crown $crown:expr, light $light:literal,
@@ -28,7 +28,7 @@ macro_rules! tree {
     };
 }
 
-/// A row for what has no trunk to measure: its width is a share of its height.
+/// Defines a row for a plant without a trunk to measure: its width is a share of its height.
 macro_rules! clump {
     ($preset:literal, $latin:literal, [$($name:literal),*], $group:ident, top $top:literal, wide $wide:literal,
      light $light:literal, life $life:literal, spread $spread:literal) => {
@@ -39,30 +39,34 @@ macro_rules! clump {
     };
 }
 
-/// Hasenauer (1997), open-grown trees in Austria: `ln(width / m) = b0 + b1 ln(dbh / cm)`, with the variance of its residuals.
+/// Returns the equation of Hasenauer (1997) for open-grown trees in Austria: `ln(width / m) = b0 + b1 ln(dbh / cm)`,
+/// with the variance of its residuals.
 const fn hasenauer(b0: f64, b1: f64, variance: f64) -> Crown {
     Crown { b0, b1, variance, is_published: true }
 }
 
-/// The same form with figures chosen by us, for kinds that Hasenauer did not measure.
+/// Returns an equation of the same form with figures chosen by us, for kinds that Hasenauer did not measure.
 const fn general(b0: f64, b1: f64, variance: f64) -> Crown {
     Crown { b0, b1, variance, is_published: false }
 }
 
-/// Hasenauer's broadleaves without an equation of their own.
+/// Hasenauer's equation for other broadleaves.
 const OTHER_BROADLEAF: Crown = hasenauer(0.1783, 0.5665, 0.025);
+/// Hasenauer's equation for oak.
 const OAK: Crown = hasenauer(-0.3973, 0.7328, 0.038);
-/// Variance of logarithms where only the form is known: one tree in twenty is more than 2.2 times as wide, or less than 1 / 2.2.
+/// Variance of logarithms if only the form is known: one tree in twenty is more than 2.2 times as wide, or less than
+/// 1 / 2.2.
 const WIDE: f64 = 0.16;
-/// Columns and spindles of cultivated forms.
+/// Columnar and spindle-shaped cultivars.
 const NARROW: Crown = general(-1.0, 0.55, WIDE);
-/// Heads of fronds hardly grow with the stem.
+/// Heads of fronds, which hardly grow with the stem.
 const FRONDS: Crown = general(1.0, 0.2, WIDE);
 /// Crowns of fruit trees and of others that fork low, and flat tops.
 const LOW: Crown = general(0.25, 0.62, WIDE);
+/// Crowns of conifers that Hasenauer did not measure.
 const CONIFER: Crown = general(-0.3, 0.65, WIDE);
 
-/// In order of the presets' words.
+/// All species, in order of the presets' words.
 #[rustfmt::skip]
 pub(crate) const SPECIES: &[Allometry] = &[
     tree!("acacia", "Vachellia tortilis", ["umbrella thorn", "acacia tortilis"], Broadleaf, top 18.0, thick 0.9, free 26.0, stand 50.0, dbh_50 0.3, crown general(0.6, 0.6, WIDE), light 0.95, life 150.0, spread 20.0),

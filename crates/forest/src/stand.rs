@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// The measures of a tree whose origin is stated.
+/// Measures of a tree whose origin is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     /// [`Tree::height_m`]
@@ -15,18 +15,18 @@ pub enum Figure {
     Age,
 }
 
-/// Which figures of a tree were given by its inventory; the others follow from the allometry of its species.
+/// Set of the figures of a tree that its inventory gave; the others follow from the allometry of its species.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Given(u8);
 
 impl Given {
-    /// Marks `figure` as given.
+    /// Returns the set with `figure` marked as given.
     #[must_use]
     pub fn with(self, figure: Figure) -> Self {
         Self(self.0 | (1 << figure as u8))
     }
 
-    /// True if `figure` was given.
+    /// Returns whether `figure` was given.
     pub fn has(self, figure: Figure) -> bool {
         self.0 & (1 << figure as u8) != 0
     }
@@ -43,19 +43,19 @@ pub struct Tree {
     pub row: u32,
     /// Years since germination, 0 and more.
     pub age_years: f64,
-    /// Metres from the foot to the top of the crown, above 0.
+    /// Height from the foot to the top of the crown, metres, above 0.
     pub height_m: f64,
     /// Diameter of the stem 1.3 m above the foot, in metres; 0 for trees below 1.3 m.
     pub dbh_m: f64,
     /// Mean diameter of the crown in metres, above 0.
     pub crown_width_m: f64,
-    /// Turn about the vertical in radians, 0 to 2 pi.
+    /// Rotation about the vertical in radians, 0 to 2 pi.
     pub yaw: f64,
     /// Direction of the trunk's axis at its foot: a unit vector, +Y if the tree is upright.
     pub up: DVec3,
     /// Horizontal offset of the centre of the crown from the foot in metres: crowns grow away from their neighbours.
     pub crown_offset_m: DVec3,
-    /// Which figures were given.
+    /// Figures that were given.
     pub given: Given,
 }
 
@@ -80,7 +80,8 @@ pub struct StandFault {
 }
 
 impl Stand {
-    /// Faults of all trees: numbers that are not finite or out of range, species without a row, rows that do not ascend.
+    /// Returns the faults of all trees: numbers that are not finite or out of range, species without a row, rows that
+    /// do not ascend.
     pub fn validate(&self) -> impl Iterator<Item = StandFault> + '_ {
         self.trees.iter().enumerate().flat_map(|(tree, t)| {
             let follows = tree == 0 || self.trees[tree - 1].row < t.row;

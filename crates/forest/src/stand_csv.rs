@@ -40,10 +40,10 @@ const COLUMNS: [&str; 16] = [
 /// | `crown_offset_x_m`, `crown_offset_z_m` | from the foot to the middle of the crown |
 /// | `given` | letters of the figures that the inventory gave: `h`eight, `d`bh, `c`rown, `a`ge |
 ///
-/// Numbers are as short as they can be and still read back to the same bits. Cost: linear, a row at a time.
+/// Numbers are as short as possible and read back to the same bits. Cost: linear, a row at a time.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 pub fn write_stand_csv(stand: &Stand, out: impl io::Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(COLUMNS)?;

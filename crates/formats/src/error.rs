@@ -1,4 +1,4 @@
-//! What can be wrong with a file: what, where, and what to do about it.
+//! Faults of a file: what is wrong, where, and what to do about it.
 
 use core::fmt;
 use std::io;
@@ -8,7 +8,7 @@ use base::{Report, Slip};
 use crate::foreign::Foreign;
 use crate::{CloudFormat, DrawingFormat, ModelFormat};
 
-/// Where in a file something is.
+/// Position in a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Place {
@@ -54,11 +54,11 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong with a file of strokes or with a model, as data for messages.
+/// Fault of a file of strokes or of a model, as data for messages.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileFault {
-    /// Nothing in it, or only white space.
+    /// The file holds nothing, or only white space.
     #[error("the file is empty; was it saved completely?")]
     Empty,
     /// The text or the bytes break the format's grammar.
@@ -75,43 +75,43 @@ pub enum FileFault {
         /// What was not finished.
         inside: String,
     },
-    /// Allowed by the format, not read by us.
+    /// The file is allowed by the format, but Burgeon does not read it.
     #[error("{what} is not supported; {advice}")]
     Unsupported {
-        /// What it is.
+        /// The unsupported feature.
         what: String,
         /// What to do.
         advice: &'static str,
     },
-    /// Beyond a bound that keeps hostile files harmless.
+    /// The file exceeds a bound that keeps hostile files harmless.
     #[error("{what} goes beyond the limit of {limit}; {advice}")]
     TooMuch {
-        /// What is counted.
+        /// The quantity that is bounded.
         what: &'static str,
         /// The bound.
         limit: u64,
         /// What to do.
         advice: &'static str,
     },
-    /// There is not one stroke.
+    /// The drawing has no strokes.
     #[error("there is no stroke in it{because}; draw lines, paths or shapes that are visible")]
     NoStrokes {
-        /// What there was instead, in brackets; may be empty.
+        /// The file's content instead, in brackets; may be empty.
         because: String,
     },
     /// The bytes are not UTF-8 text.
     #[error("after {after} bytes the text is not UTF-8; save it again as UTF-8")]
     NotUtf8 {
-        /// Good bytes before.
+        /// Number of valid bytes before.
         after: u64,
     },
     /// It is a file of another program.
     #[error("{0}")]
     Foreign(Foreign),
-    /// It names a file that must not be read.
+    /// The file names another one that must not be read.
     #[error("{why}")]
     Refused {
-        /// Who names which file, why it is not read, and what to do.
+        /// The file that is named, what names it, why it is not read, and what to do.
         why: String,
     },
     /// Reading failed.
@@ -120,12 +120,12 @@ pub enum FileFault {
 }
 
 impl FileFault {
-    /// [`Self::Foreign`] if the bytes are those of a file that is read nowhere.
+    /// Returns [`Self::Foreign`] if the bytes are those of a file that nothing here reads.
     pub(crate) fn if_foreign(foreign: Option<Foreign>) -> Result<(), Self> {
         foreign.map_or(Ok(()), |foreign| Err(Self::Foreign(foreign)))
     }
 
-    /// [`Self::NoStrokes`] for the reasons that its reader gave.
+    /// Returns [`Self::NoStrokes`] with the reasons from the reader's report.
     pub(crate) fn no_strokes(report: &Report) -> Self {
         let reasons: Vec<&str> = report.warnings.iter().take(3).map(|w| w.message.as_str()).collect();
         let because = if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) };
@@ -141,15 +141,15 @@ impl FileFault {
     }
 }
 
-/// A drawing could not be read.
+/// Error of reading a drawing.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{place}: {fault}", format.name())]
 pub struct DrawingError {
-    /// The format it was read as.
+    /// The format that the reader expected.
     pub format: DrawingFormat,
     /// Where.
     pub place: Place,
-    /// What and what to do.
+    /// The fault, and what to do.
     pub fault: FileFault,
 }
 
@@ -159,15 +159,15 @@ impl DrawingError {
     }
 }
 
-/// A model could not be read.
+/// Error of reading a model.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{place}: {fault}", format.name())]
 pub struct ModelError {
-    /// The format it was read as.
+    /// The format that the reader expected.
     pub format: ModelFormat,
     /// Where.
     pub place: Place,
-    /// What and what to do.
+    /// The fault, and what to do.
     pub fault: FileFault,
 }
 
@@ -177,15 +177,15 @@ impl ModelError {
     }
 }
 
-/// A scan could not be read.
+/// Error of reading a scan.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{place}: {fault}", format.name())]
 pub struct CloudError {
-    /// The format it was read as.
+    /// The format that the reader expected.
     pub format: CloudFormat,
     /// Where.
     pub place: Place,
-    /// What and what to do.
+    /// The fault, and what to do.
     pub fault: FileFault,
 }
 
@@ -195,19 +195,19 @@ impl CloudError {
     }
 }
 
-/// Something could not be written; nothing usable was.
+/// Error of writing; nothing usable was written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The sink refused bytes.
+    /// The sink failed.
     #[error("writing failed: {0}")]
     Io(#[from] io::Error),
-    /// The model is not sound: a bug of its maker.
+    /// The model is not sound: a bug of the code that made it.
     #[error("part `{part}` cannot be written: {fault}")]
     Model {
         /// Name of the part.
         part: String,
-        /// What is wrong with it.
+        /// The fault of its mesh.
         fault: mesh::MeshFault,
     },
     /// A texture's pixels do not fit its size, or the size is zero.
@@ -223,36 +223,36 @@ pub enum WriteError {
     /// The format cannot hold that much.
     #[error("{what} is too large for {format}: split the model or choose another format")]
     TooLarge {
-        /// What is too large.
+        /// The quantity that is too large.
         what: &'static str,
         /// Name of the format.
         format: &'static str,
     },
-    /// A key of an animation does not fit the model, or its time does not come after the one before.
+    /// A key of an animation does not fit the model, or its time is not after that of the key before.
     #[error("key {key} (from 0) of the animation has other parts or vertices, or does not come later")]
     Keys {
         /// Its index from 0.
         key: usize,
     },
-    /// Joints do not fit the model.
+    /// The joints do not fit the model.
     #[error("the joints do not fit the model: each vertex needs a hold, and each joint a move for each key")]
     Rig,
-    /// Points without triangles in a format of triangles.
+    /// The model has points without triangles, but the format holds only triangles.
     #[error("a cloud of points has no triangles for STL; choose .ply, .obj or .glb")]
     NoTriangles,
-    /// The format is only read.
+    /// Burgeon reads the format, but does not write it.
     #[error("{format} is read but not written; choose {instead}")]
     ReadOnly {
         /// The format asked for.
         format: &'static str,
-        /// What to choose.
+        /// The formats to choose instead.
         instead: &'static str,
     },
 }
 
 base::coded!(FileFault {
     Self::Empty => "file-empty" {},
-    Self::Malformed { what, .. } => "file-malformed" { what = &Slip::of(what) => Slip },
+    Self::Malformed { what, .. } => "file-malformed" { what = &Slip::from_message(what) => Slip },
     Self::Truncated { inside } => "file-truncated" { inside },
     Self::Unsupported { what, .. } => "file-unsupported" { what },
     Self::TooMuch { what, limit, .. } => "file-too-much" { what, limit },

@@ -1,8 +1,8 @@
-//! Files of other programs that are no drawing, model, scan or table: what they are and what to do with them.
+//! Files of other programs that are not a drawing, model, scan or table: what they are and what to do with them.
 
 use core::fmt;
 
-/// A kind of file that is read nowhere, or only somewhere else, told by its first bytes.
+/// A kind of file that Burgeon does not read, or reads only elsewhere, recognised by its first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Foreign {
@@ -30,15 +30,15 @@ pub enum Foreign {
     Gzip,
 }
 
-/// So many bytes from the start of a file are looked at.
+/// Number of bytes from the start of a file that are examined.
 const LOOKED_AT: usize = 4096;
 
-/// Where the name of the first file of a ZIP archive stands.
+/// Byte at which the name of the first file of a ZIP archive begins.
 const ZIP_NAME: usize = 30;
 
 impl Foreign {
-    /// What the first bytes say, if it is none that is read as a drawing, a model or a scan. Ask only where no project and
-    /// no compressed file is expected. The first 4096 bytes are enough.
+    /// Recognises the file by its first bytes, unless it is read as a drawing, a model or a scan. Call this only
+    /// where neither a project nor a compressed file is expected. The first 4096 bytes are enough.
     ///
     /// ```
     /// use formats::Foreign;
@@ -75,7 +75,8 @@ impl Foreign {
         }
     }
 
-    /// [`sniff`](Self::sniff) where no drawing is expected, either: drawings of other programs are told, too.
+    /// Does the same as [`sniff`](Self::sniff) where no drawing is expected, and recognises drawings of other
+    /// programs, too.
     ///
     /// ```
     /// use formats::Foreign;
@@ -95,7 +96,7 @@ impl Foreign {
     }
 }
 
-/// Whose archive it is.
+/// Returns the program that an archive belongs to.
 fn in_zip(start: &[u8]) -> Foreign {
     let first = start.get(ZIP_NAME..).unwrap_or_default();
     if holds(start, b"application/x-krita") {
@@ -139,7 +140,8 @@ impl fmt::Display for Foreign {
                  (Inkscape) and save it as SVG there",
             ),
             Self::E57 => f.write_str(
-                "the file is a laser scan in E57, which is not read; save it as LAS, PLY or XYZ (CloudCompare can)",
+                "the file is a laser scan in E57, and another kind of file is expected here; give it to `burgeon scan`, by a \
+                 name that ends with .e57",
             ),
             Self::Project => f.write_str(
                 "the file is a project of Burgeon (.burgeon), and another kind of file is expected here; open it in the \
@@ -179,7 +181,7 @@ base::coded!(Foreign {
 mod tests {
     use super::*;
 
-    /// The start of an archive whose first file has that name and these bytes.
+    /// Returns the start of an archive whose first file has this name and these bytes.
     fn archive(name: &str, bytes: &[u8]) -> Vec<u8> {
         let mut out = b"PK\x03\x04".to_vec();
         out.resize(ZIP_NAME, 0);

@@ -1,9 +1,9 @@
-//! Formats by the first bytes of a file.
+//! Formats recognised by the first bytes of a file.
 
 use crate::{DrawingFormat, ModelFormat};
 
 impl DrawingFormat {
-    /// The format that the first bytes of a file look like.
+    /// Returns the format that the first bytes of a file look like.
     ///
     /// ```
     /// use formats::DrawingFormat;
@@ -17,7 +17,7 @@ impl DrawingFormat {
         match first {
             b'<' if has("<svg") || has(":svg") => Some(Self::Svg),
             b'<' if has("<ink") || has(":ink") => Some(Self::InkMl),
-            // A packed file: of all drawings only SVG is.
+            // Of all drawings only SVG comes as a packed file.
             0x1f if head.starts_with(&[0x1f, 0x8b]) => Some(Self::Svg),
             b'{' if has("\"excalidraw\"") || has("\"excalidraw/clipboard\"") => Some(Self::Excalidraw),
             b'{' if has("\"tldrawFileFormatVersion\"") => Some(Self::Tldraw),
@@ -30,10 +30,10 @@ impl DrawingFormat {
 }
 
 impl ModelFormat {
-    /// The format that the first bytes of a file look like. A binary STL has no mark and is not recognised.
+    /// Returns the format that the first bytes of a file look like. A binary STL has no mark and is not recognised.
     pub fn sniff(start: &[u8]) -> Option<Self> {
         let text = start.trim_ascii_start();
-        // Exporters of OBJ sign in comments.
+        // Exporters of OBJ name themselves in comments.
         let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii_start);
         let first = lines.find(|l| !l.is_empty() && !l.starts_with(b"#")).unwrap_or_default();
         if start.starts_with(b"glTF") {

@@ -5,9 +5,8 @@
 //! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; bytes -> [`read_structure`] ->
 //! `plant::Plant` -> [`write_structure`] -> bytes; [`mechanics::Mechanism`] -> [`robot_files`] -> bytes.
 //!
-//! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
-//! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
-//! border.
+//! The input may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to do, and
+//! nothing panics. Inside, y points up and lengths are metres; this crate converts everything else.
 
 mod cloud;
 mod drawing;
@@ -22,7 +21,9 @@ mod summary;
 mod table;
 mod tiles;
 
-pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
+pub use cloud::{
+    ClassCount, CloudFacts, MAX_CLOUD_BYTES, read_cloud, read_cloud_with_facts, write_cloud_ply,
+};
 pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing, write_svg};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use foreign::Foreign;
@@ -33,11 +34,12 @@ pub use leaves::{
     write_marks, write_rays,
 };
 pub use model::{
-    BesideFile, ExportSpec, FileStems, Level, MAX_MODEL_BYTES, ModelFiles, Morph, NoFile, ObjFiles, Packing,
-    PngCache, Resolver, SideFile, UsdFiles, decode_uri, file_name, gltf_files, model_files, names_beside,
-    no_files, obj_files, read_model, read_picture, usd_files, warn_of_wind, write_glb, write_glb_levels,
-    write_glb_morph, write_glb_packed, write_glb_rigged, write_glb_scene, write_glb_with, write_model,
-    write_ply, write_png, write_stl,
+    Assembly, AssemblyJoint, BesideFile, BoundCopies, ExportSpec, FileStems, Level, MAX_MODEL_BYTES,
+    ModelFiles, Morph, NamedNodes, NoFile, ObjFiles, Packing, PngCache, Resolver, SideFile, UsdFiles,
+    WindGroup, assembly_files, decode_uri, file_name, gltf_files, model_files, names_beside, no_files,
+    obj_files, read_model, read_picture, usd_files, warn_of_wind, write_glb, write_glb_joined,
+    write_glb_levels, write_glb_morph, write_glb_nodes, write_glb_packed, write_glb_rigged, write_glb_scene,
+    write_glb_with, write_model, write_ply, write_png, write_stl,
 };
 pub use plant::{
     AddedColumn, ReadStructure, StructureError, StructureSpec, StructureTally, read_structure, write_mtg,

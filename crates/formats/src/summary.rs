@@ -1,14 +1,14 @@
-//! What is in a file, for people.
+//! Summaries of files, for people.
 
 use base::Warning;
 use ink::{Drawing, StrokeMode};
 use mesh::Model;
 use serde::Serialize;
 
-/// What a model holds; lengths in metres.
+/// Summary of a model; lengths in metres.
 ///
 /// ```
-/// let info = formats::ModelSummary::of(&mesh::Model::default(), &[]);
+/// let info = formats::ModelSummary::from_model(&mesh::Model::default(), &[]);
 /// assert_eq!((info.triangles, info.size), (0, [0.0; 3]));
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,11 +33,11 @@ pub struct ModelSummary {
     pub parts: Vec<PartSummary>,
     /// The materials.
     pub materials: Vec<MaterialSummary>,
-    /// What the reader said, and what is wrong with the meshes.
+    /// Warnings of the reader, and faults of the meshes.
     pub warnings: Vec<String>,
 }
 
-/// What a part holds.
+/// Summary of a part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartSummary {
     /// Its name.
@@ -52,26 +52,26 @@ pub struct PartSummary {
     pub uvs: bool,
     /// It has colours at its vertices.
     pub colors: bool,
-    /// It knows how wind moves its vertices.
+    /// It has columns for wind.
     pub wind: bool,
 }
 
-/// What a material is.
+/// Summary of a material.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaterialSummary {
     /// Its name.
     pub name: String,
-    /// What it stands for.
+    /// Word for its kind.
     pub kind: &'static str,
     /// Width and height of its texture in pixels.
     pub texture: Option<[u32; 2]>,
-    /// Seen from both sides.
+    /// Visible from both sides.
     pub double_sided: bool,
 }
 
 impl ModelSummary {
-    /// The summary of a model and of what its reader said.
-    pub fn of(model: &Model, warnings: &[Warning]) -> Self {
+    /// Returns the summary of a model, with the warnings of its reader.
+    pub fn from_model(model: &Model, warnings: &[Warning]) -> Self {
         let b = model.bounds();
         let corner = |v: glam::DVec3| if b.is_empty() { [0.0; 3] } else { v.to_array() };
         let mut warnings: Vec<String> = warnings.iter().map(|w| w.message.clone()).collect();
@@ -79,7 +79,7 @@ impl ModelSummary {
         for fault in model.validate() {
             match fault {
                 mesh::MeshFault::Degenerate(_) => degenerate += 1,
-                // One of each sort of fault is enough to send the user to the maker of the file.
+                // One fault of each sort is enough to send the user to the maker of the file.
                 other if warnings.len() < 20 => warnings.push(other.to_string()),
                 _ => {}
             }
@@ -118,11 +118,11 @@ impl ModelSummary {
     }
 }
 
-/// What a drawing holds; lengths in the file's unit, y up.
+/// Summary of a drawing; lengths in the file's unit, y up.
 ///
 /// ```
 /// let d = ink::Drawing::from_polylines("a", &[vec![glam::DVec2::ZERO, glam::DVec2::new(3.0, 4.0)]]);
-/// let info = formats::DrawingSummary::of(&d, &[]);
+/// let info = formats::DrawingSummary::from_drawing(&d, &[]);
 /// assert_eq!((info.strokes, info.points, info.max), (1, 2, [3.0, 4.0]));
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -145,13 +145,13 @@ pub struct DrawingSummary {
     pub times: bool,
     /// Some points have pressures.
     pub pressures: bool,
-    /// What the reader said.
+    /// Warnings of the reader.
     pub warnings: Vec<String>,
 }
 
 impl DrawingSummary {
-    /// The summary of a drawing and of what its reader said.
-    pub fn of(drawing: &Drawing, warnings: &[Warning]) -> Self {
+    /// Returns the summary of a drawing, with the warnings of its reader.
+    pub fn from_drawing(drawing: &Drawing, warnings: &[Warning]) -> Self {
         let samples = || drawing.strokes.iter().flat_map(|s| &s.samples);
         let finite = || samples().map(|s| s.at).filter(|p| p.is_finite());
         let none = glam::DVec2::INFINITY;

@@ -1,9 +1,9 @@
-//! The table of formats: what every list of formats, help text, message and page of the docs is made from.
+//! The table of formats: the source of every list of formats, help text, message and page of the docs.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What files of a format have room for.
+/// Content for which a format has room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Room {
     /// Any unit and up axis; other formats fix theirs.
@@ -14,21 +14,21 @@ pub enum Room {
     Textures,
     /// Heights of bark, as a texture.
     Heights,
-    /// How much light leaves let through, as a texture.
+    /// Light that leaves transmit, as a texture.
     Translucence,
     /// How wind moves each vertex.
     Wind,
     /// All levels of detail in one file.
     Levels,
-    /// Meshes that stand in many places and are there once.
+    /// Meshes that are stored once and have many places.
     Instances,
     /// Joints with an animation.
     Joints,
-    /// Shapes that an animation leads through.
+    /// Shapes of an animation.
     Morphs,
     /// Numbers in few bits, compressed.
     Packing,
-    /// The meshes of a plant's organs, beside its structure.
+    /// The meshes of a plant's organs, in addition to its structure.
     OrganMeshes,
 }
 
@@ -47,7 +47,7 @@ base::words!(Room {
     OrganMeshes = "organ-meshes",
 });
 
-/// What lies beside a file, named by it.
+/// Kind of a companion file, which another file names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beside {
     /// A file of materials.
@@ -56,33 +56,36 @@ pub enum Beside {
     Buffer,
     /// The pictures of its materials.
     Textures,
-    /// The meshes that are seen of its bodies.
+    /// The visible meshes of its bodies.
     Meshes,
+    /// Groups of its joints in the wind.
+    Wind,
 }
 
 impl Beside {
-    /// A phrase for messages.
+    /// Returns a phrase for messages.
     pub const fn phrase(self) -> &'static str {
         match self {
             Self::Materials => "the materials",
             Self::Buffer => "the buffer",
             Self::Textures => "a texture",
             Self::Meshes => "a mesh",
+            Self::Wind => "the wind",
         }
     }
 
-    /// How the name of its file ends, without the dot, where the rest is the stem of the file that names it: of textures
-    /// and meshes it is not.
+    /// Returns the extension of its file, without the dot, if the rest of the name is the stem of the file that names
+    /// it: not so for textures and meshes.
     pub const fn ending(self) -> Option<&'static str> {
         match self {
             Self::Materials => Some("mtl"),
             Self::Buffer => Some("bin"),
-            Self::Textures | Self::Meshes => None,
+            Self::Textures | Self::Meshes | Self::Wind => None,
         }
     }
 }
 
-/// Whether Burgeon reads a format, writes it, or both.
+/// Access of Burgeon to a format: reading, writing, or both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Read only.
@@ -96,37 +99,37 @@ pub enum Access {
 /// A row of the table of formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FormatRow {
-    /// The word by which the format is asked for, each once in the whole table.
+    /// Word for the format on the command line and in specs, each once in the whole table.
     pub word: &'static str,
-    /// The name for messages.
+    /// Name for messages.
     pub name: &'static str,
-    /// How the names of its files end, without the dot; what is written has the first.
+    /// Extensions of its files, without the dot; written files have the first.
     pub endings: &'static [&'static str],
-    /// The media type of its files.
+    /// Media type of its files.
     pub media_type: &'static str,
-    /// What it is, in a line without a full stop.
+    /// Description in one line without a full stop.
     pub about: &'static str,
-    /// Whether it is read, written or both.
+    /// Whether Burgeon reads it, writes it or both.
     pub access: Access,
-    /// What its files have room for.
+    /// Contents for which its files have room.
     pub holds: &'static [Room],
-    /// What lies beside its files.
+    /// Companion files.
     pub beside: &'static [Beside],
 }
 
 impl FormatRow {
-    /// Whether Burgeon reads the format.
+    /// Returns whether Burgeon reads the format.
     pub const fn is_read(&self) -> bool {
         !matches!(self.access, Access::Write)
     }
 
-    /// Whether Burgeon writes the format.
+    /// Returns whether Burgeon writes the format.
     pub const fn is_written(&self) -> bool {
         !matches!(self.access, Access::Read)
     }
 }
 
-/// Formats of one kind of content, a row each.
+/// Defines the formats of one kind of content, a row each.
 macro_rules! formats {
     ($(#[$meta:meta])* $name:ident { $($variant:ident = $word:literal {
         name: $label:literal,
@@ -150,7 +153,7 @@ macro_rules! formats {
         base::words!($name { $($variant = $word),+ });
 
         impl $name {
-            /// The format's row of the table.
+            /// Returns the format's row of the table.
             pub const fn row(self) -> &'static FormatRow {
                 match self { $(Self::$variant => &FormatRow {
                     word: $word,
@@ -164,40 +167,40 @@ macro_rules! formats {
                 },)+ }
             }
 
-            /// The name for messages.
+            /// Returns the name for messages.
             pub const fn name(self) -> &'static str {
                 self.row().name
             }
 
-            /// How the names of written files end, without the dot.
+            /// Returns the extension of written files, without the dot.
             pub const fn extension(self) -> &'static str {
                 self.row().endings[0]
             }
 
-            /// Whether its files have room for something.
+            /// Returns whether its files have room for this content.
             pub fn holds(self, room: Room) -> bool {
                 self.row().holds.contains(&room)
             }
 
-            /// The format that the ending of a file's name (without the dot, any case) stands for.
+            /// Returns the format that has this file extension (without the dot, any case).
             pub fn from_extension(extension: &str) -> Option<Self> {
                 let is_own = |f: &Self| f.row().endings.iter().any(|e| e.eq_ignore_ascii_case(extension));
                 Self::ALL.into_iter().find(is_own)
             }
 
-            /// The endings of all formats that are read, as a list for people: `.a, .b or .c`.
+            /// Returns the extensions of all formats that Burgeon reads, as a list for people: `.a, .b or .c`.
             pub fn read_endings() -> String {
                 let read = Self::ALL.into_iter().map(Self::row).filter(|row| row.is_read());
                 list_of_endings(read.flat_map(|row| row.endings))
             }
 
-            /// The endings of all formats that are written, as a list for people: `.a, .b or .c`.
+            /// Returns the extensions of all formats that Burgeon writes, as a list for people: `.a, .b or .c`.
             pub fn written_endings() -> String {
                 let written = Self::ALL.into_iter().map(Self::row).filter(|row| row.is_written());
                 list_of_endings(written.map(|row| &row.endings[0]))
             }
 
-            /// The endings of all written formats with room for something, as a list for people.
+            /// Returns the extensions of all written formats with room for this content, as a list for people.
             pub fn endings_with(room: Room) -> String {
                 let written = Self::ALL.into_iter().filter(|f| f.row().is_written() && f.holds(room));
                 list_of_endings(written.map(|f| &f.row().endings[0]))
@@ -338,6 +341,15 @@ formats! {
             holds: [],
             beside: [Meshes],
         }
+        Usd = "usd-physics" {
+            name: "USD physics",
+            endings: &["physics.usda"],
+            media_type: "model/vnd.usda",
+            about: "Universal Scene Description with rigid bodies and springy joints (UsdPhysics)",
+            access: Write,
+            holds: [],
+            beside: [],
+        }
     }
 }
 
@@ -435,7 +447,7 @@ formats! {
             name: "LAS",
             endings: &["las", "laz"],
             media_type: "application/vnd.las",
-            about: "LAS 1.0 to 1.4; compressed as LAZ in the command",
+            about: "LAS 1.0 to 1.4; compressed (LAZ, COPC) in the command and Python",
             access: Read,
             holds: [Axes],
             beside: [],
@@ -449,10 +461,19 @@ formats! {
             holds: [Axes],
             beside: [],
         }
+        E57 = "e57" {
+            name: "E57",
+            endings: &["e57"],
+            media_type: "model/e57",
+            about: "ASTM E57, all scans of a file; in the command and Python",
+            access: Read,
+            holds: [Axes],
+            beside: [],
+        }
     }
 }
 
-/// Endings as a list for people, such as `.glb, .obj or .ply`.
+/// Formats extensions as a list for people, such as `.glb, .obj or .ply`.
 pub fn list_of_endings<'a>(endings: impl IntoIterator<Item = &'a &'static str>) -> String {
     let all: Vec<String> = endings.into_iter().map(|e| format!(".{e}")).collect();
     base::either(&all.iter().map(String::as_str).collect::<Vec<_>>())

@@ -1,4 +1,4 @@
-//! Phyllotaxis as it stands in a spec.
+//! Phyllotaxis as written in a spec.
 
 use plant::{Divergence, Phyllotaxis};
 use schemars::JsonSchema;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::GrowthError;
 
-/// How buds or leaves stand around their axis.
+/// Arrangement of buds or leaves around their axis.
 ///
 /// ```
 /// use growth::Arrangement;
@@ -18,21 +18,21 @@ use crate::GrowthError;
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Arrangement {
-    /// One a node, turned by the divergence from the one before.
+    /// One per node, turned by the divergence from the one before.
     Spiral {
-        /// Degrees; 137.5 in most plants.
+        /// Divergence, degrees; 137.5 in most plants.
         #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg"))]
         divergence_deg: f64,
     },
-    /// One a node, in two rows.
+    /// One per node, in two rows.
     Distichous,
-    /// Two a node, all in one plane.
+    /// Two per node, all in one plane.
     Opposite,
-    /// Two a node, each pair across the one before.
+    /// Two per node, each pair at right angles to the one before.
     Decussate,
-    /// Several a node, 2 to 12.
+    /// Several per node, 2 to 12.
     Whorled {
-        /// How many.
+        /// Number of members of a whorl.
         #[schemars(range(min = 2, max = 12))]
         count: u32,
     },
@@ -47,7 +47,7 @@ impl Default for Arrangement {
 }
 
 impl Arrangement {
-    /// The checked form.
+    /// Returns the checked form.
     ///
     /// # Errors
     /// [`GrowthError::Range`] for a divergence that is not finite or a whorl of other than 2 to 12.

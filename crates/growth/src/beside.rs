@@ -1,28 +1,31 @@
-//! Courses of wood beside obstacles: bark stays out of them, and limbs go round as wide as they are thick.
+//! Courses of wood next to obstacles: bark stays out of them, and limbs go round at a distance that suits their
+//! thickness.
 //!
-//! `course with radii -> denser where it is near -> pushed out by its radius -> thinner where there is no room`
+//! `course with radii -> refined near obstacles -> pushed out by its radius -> thinned where there is no room`
 
 use base::ops;
 use glam::DVec3;
 
 use crate::Obstacles;
 
-/// How far the line that is drawn may run beside the course, as a share of the tree's size.
+/// Tolerance between the drawn line and the course, as a share of the tree's size.
 const DRAWN: f64 = 0.0012;
-/// Bark may stand out from the course by this much of the radius: bends that are eased, corners of fillets.
+/// Largest distance of bark from the course, in radii: bends that are smoothed, corners of fillets.
 const BARK: f64 = 1.08;
-/// A foot is this much wider than the trunk on it, over two radii.
+/// Widening of a foot relative to the trunk above it, over two radii.
 const FLARE: f64 = 0.25;
-/// A trunk that stands on an obstacle rises straight from it for so many of its radii, and is bent upwards at so many.
+/// Straight part of a trunk above the obstacle that it stands on, in radii.
 const STRAIGHT: f64 = 1.2;
+/// Part of that trunk within which it is bent upwards, in radii.
 const BENT: f64 = 4.0;
-/// How fast wood may become thinner towards a place without room: radius over length.
+/// Largest taper of wood towards a place without room: radius over length.
 const TAPER: f64 = 0.25;
-/// Rounds of pushing; in all but the last ones neighbours follow half of the way, so that bends are wide.
+/// Rounds of pushing; in all but the last ones neighbours follow by half, so that bends are wide.
 const ROUNDS: u32 = 14;
+/// Last rounds of pushing, in which neighbours do not follow.
 const HARD_ROUNDS: u32 = 4;
 
-/// An axis to be: points with radii, and the place in its chain of joints of those that are joints.
+/// An axis under construction: points with radii, and, for points that are joints, the index in the chain of joints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Course {
     /// Whether it stands on the ground and not on a bearer.
@@ -30,48 +33,48 @@ pub(crate) struct Course {
     pub(crate) points: Vec<DVec3>,
     pub(crate) radii: Vec<f64>,
     pub(crate) joint: Vec<Option<usize>>,
-    /// How far points that are left out may lie aside, metres: less where an obstacle is near.
+    /// Tolerance for leaving points out, metres: smaller near an obstacle.
     pub(crate) aside: Vec<f64>,
-    /// The most that wood may measure from each point on, because it was squeezed below.
+    /// Largest radius of wood from each point on, as it was squeezed below.
     pub(crate) cap: Vec<f64>,
-    /// The way from its start on which it stands on an obstacle or runs inside its bearer: there it stays as it is.
+    /// Length from its start on which it stands on an obstacle or runs inside its bearer, and is not changed.
     hidden: f64,
     /// Distance of its start from the nearest obstacle.
     start: f64,
 }
 
-/// What a course starts from.
+/// Start of a course.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Foot {
-    /// How far its bearer was pushed aside.
+    /// Displacement of its bearer.
     pub(crate) moved: DVec3,
-    /// The most that its wood may measure.
+    /// Largest radius of its wood.
     pub(crate) cap: f64,
-    /// How far it runs inside its bearer.
+    /// Length that runs inside its bearer.
     pub(crate) within: f64,
 }
 
-/// What wood keeps from obstacles.
+/// Distances that wood keeps from obstacles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Room<'a> {
     obstacles: &'a Obstacles,
-    /// Distance between bark and obstacles that is aimed at, and the least of it.
+    /// Target of the distance between bark and obstacles, and its least value.
     wish: f64,
     least: f64,
     tip: f64,
 }
 
 impl<'a> Room<'a> {
-    /// `size`: of the whole tree; `tip`: radius of its tips.
+    /// Prepares the obstacles for a tree of this `size` whose tips have the radius `tip`, both in metres.
     pub(crate) fn new(obstacles: &'a Obstacles, size: f64, tip: f64) -> Self {
         let least = DRAWN * size;
         Self { obstacles, wish: obstacles.clearance_m().max(least), least, tip }
     }
 
-    /// Moves a course beside the obstacles that are near, where some are.
+    /// Moves a course clear of the obstacles near it, if there are any.
     ///
-    /// Where nothing can be moved, as between two walls, wood becomes thinner, and what grows from it no thicker than
-    /// that; where it would be thinner than a third of a tip, it ends.
+    /// Where nothing can be moved, as between two walls, wood becomes thinner, and so does everything that grows from
+    /// it; where it would be thinner than a third of a tip, it ends.
     pub(crate) fn clear(&self, course: &mut Course, foot: Foot) {
         let n = course.points.len();
         if self.obstacles.is_empty() || n < 2 {
@@ -79,7 +82,7 @@ impl<'a> Room<'a> {
         }
         let whole = foot.moved.length();
         if whole > 1e-9 {
-            // What grows on wood that was pushed aside goes with it, less and less over four times the way.
+            // Wood on a bearer that was pushed aside moves with it, decreasingly over four times the displacement.
             let along = lengths(&course.points);
             for (p, way) in course.points.iter_mut().zip(&along).skip(1) {
                 *p += foot.moved * (1.0 - way / (4.0 * whole)).max(0.0);
@@ -102,13 +105,13 @@ impl<'a> Room<'a> {
         self.squeeze(course, first, foot.cap);
     }
 
-    /// Adds points where an obstacle is near, so that straight pieces cut no corner. Whether one is.
+    /// Adds points near obstacles, so that straight pieces do not cut corners. Returns whether an obstacle is near.
     fn refine(&self, course: &mut Course) -> bool {
         let old = core::mem::take(course);
         let ways: Vec<f64> = old.points.windows(2).map(|w| w[0].distance(w[1])).collect();
         let bound = |k: usize| self.bound(old.radii[k]);
         let way = |k: Option<usize>| k.and_then(|k| ways.get(k)).copied().unwrap_or(0.0);
-        // Farther than is asked for below it is infinite.
+        // Beyond the distance that is queried below, it is infinite.
         let far: Vec<f64> = (0..old.points.len())
             .map(|k| {
                 let reach = bound(k) + way(Some(k)).max(way(k.checked_sub(1)));
@@ -141,13 +144,13 @@ impl<'a> Room<'a> {
         any
     }
 
-    /// The way up from the obstacle that a trunk stands on, if it does.
+    /// Returns the direction up from the obstacle that a trunk stands on, if it does.
     fn ground(&self, course: &Course) -> Option<DVec3> {
         let (distance, out) = self.obstacles.nearest(course.points[0])?;
         (distance < (1.0 + FLARE) * course.radii[0] && out.y > 0.5).then_some(out)
     }
 
-    /// Pushes points out until bark is clear; the points beside them follow.
+    /// Pushes points out until bark is clear; the points next to them follow.
     fn push(&self, course: &mut Course, first: usize) {
         let n = course.points.len();
         let start = course.points.clone();
@@ -157,7 +160,7 @@ impl<'a> Room<'a> {
             let mut moved = false;
             for i in first..n {
                 let Some((distance, out)) = self.wall(course, i, &along) else { continue };
-                // Near its start there is no more room than that has.
+                // Near its start there is no more room than the start has.
                 let wish = self.wish.min(course.start + 0.5 * along[i]).max(self.least.min(along[i]));
                 let needed = wish + self.bark(course, i, &along, out) * course.radii[i];
                 if distance < needed - 1e-6 {
@@ -183,7 +186,7 @@ impl<'a> Room<'a> {
         }
     }
 
-    /// Thins what has no room, and ends it where there is none at all or an obstacle stands in the way.
+    /// Thins wood without room, and ends it where there is none at all or an obstacle stands in the way.
     fn squeeze(&self, course: &mut Course, first: usize, cap: f64) {
         let n = course.points.len();
         let along = lengths(&course.points);
@@ -204,7 +207,7 @@ impl<'a> Room<'a> {
             course.radii[i] = course.radii[i].min(cap);
             course.cap[i] = cap;
         }
-        // Wood tapers towards where it is squeezed or ends; on the other side it stays as thin.
+        // Wood tapers towards a squeezed place or its end; beyond that place it stays as thin.
         let mut most = if end < n { self.tip } else { f64::INFINITY };
         for i in (0..end).rev() {
             most = if squeezed[i] { most.min(course.radii[i]) } else { most };
@@ -214,20 +217,20 @@ impl<'a> Room<'a> {
         course.truncate(end);
     }
 
-    /// Distance of a point of a course from the nearest obstacle and the way out; none where it is hidden, or so far that
-    /// nothing is done.
+    /// Returns the distance of a point of a course from the nearest obstacle and the way out; `None` if the point is
+    /// hidden, or so far that nothing is done.
     fn wall(&self, course: &Course, i: usize, along: &[f64]) -> Option<(f64, DVec3)> {
         let reach = 2.0 * self.bound(course.radii[i]);
         if along[i] < course.hidden { None } else { self.obstacles.nearest_within(course.points[i], reach) }
     }
 
-    /// Farther than this an obstacle is nothing to wood of a radius, metres.
+    /// Returns the distance beyond which an obstacle does not affect wood of a radius, metres.
     fn bound(&self, radius: f64) -> f64 {
         2.0 * self.wish + (1.0 + FLARE) * BARK * radius
     }
 
-    /// How far bark reaches towards an obstacle from the course, in radii: a slice of wood is a disc, and a tip is
-    /// round.
+    /// Returns how far bark reaches towards an obstacle from the course, in radii: a slice of wood is a disc, and a tip
+    /// is round.
     fn bark(&self, course: &Course, i: usize, along: &[f64], out: DVec3) -> f64 {
         let (points, n) = (&course.points, course.points.len());
         if i + 1 == n {
@@ -245,7 +248,7 @@ impl<'a> Room<'a> {
 }
 
 impl Course {
-    /// Without points again.
+    /// Removes all points.
     pub(crate) fn clear(&mut self) {
         self.truncate(0);
     }
@@ -257,8 +260,8 @@ impl Course {
         self.aside.push(aside);
     }
 
-    /// Lets a trunk rise at right angles to what it stands on, so that its foot lies flat on that, and bend upwards over
-    /// four times its radius.
+    /// Makes a trunk rise at right angles to the surface that it stands on, so that its foot lies flat on it, and bend
+    /// upwards over four times its radius.
     fn stand(&mut self, out: DVec3) {
         let (foot, r, along) = (self.points[0], self.radii[0], lengths(&self.points));
         for (p, way) in self.points.iter_mut().zip(&along) {
@@ -266,7 +269,7 @@ impl Course {
             *p = (foot + out * *way).lerp(*p, u * u * (3.0 - 2.0 * u));
         }
         self.hidden = BENT * r;
-        // Three points in a row: else the line that is drawn would lean from the start.
+        // Three points in a row: otherwise the drawn line would lean from the start.
         let step = along[1].min(STRAIGHT * r) / 3.0;
         for k in [2.0, 1.0] {
             self.points.insert(1, foot + out * (k * step));
@@ -285,7 +288,7 @@ impl Course {
     }
 }
 
-/// The way from the first point to each.
+/// Returns the length from the first point to each.
 fn lengths(points: &[DVec3]) -> Vec<f64> {
     let mut sum = 0.0;
     let ways = (0..points.len()).map(|i| {
@@ -302,7 +305,7 @@ mod tests {
     use super::*;
     use crate::{Obstacle, Skeleton, Wood, WoodSpec, make_wood};
 
-    /// A pole of 4 m whose foot is `x` from the middle, 10 cm thick all along.
+    /// Makes a pole of 4 m whose foot is `x` from the centre, 10 cm thick all along.
     fn pole(obstacles: &[Obstacle]) -> Wood {
         let mut s = Skeleton::default();
         let mut top = s.push_root(DVec3::ZERO, 0);

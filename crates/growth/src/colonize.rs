@@ -1,4 +1,4 @@
-//! Space colonisation: branches grow towards the attraction points that are nearest to them.
+//! Space colonisation: branches grow towards their nearest attraction points.
 //!
 //! `roots + attractors -> Skeleton` (Runions, Lane and Prusinkiewicz 2007; Yang et al. 2019, Eq 1 and 2)
 
@@ -12,28 +12,28 @@ use crate::error::{GrowthError, usable};
 use crate::field::{Change, Field, NOBODY};
 use crate::{JointId, Obstacles, Skeleton, Tropism};
 
-/// How branches grow towards attraction points.
+/// Settings of the growth towards attraction points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColonizeSpec {
     /// Distance `d_i` within which a joint perceives a point, metres, above 0, default 1.
     #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub attraction_m: f64,
-    /// Distance `d_k` at which a point is consumed, metres, above 0 and at most `attraction_m` (else that is raised
-    /// to it, with a warning), default 0.4.
+    /// Distance `d_k` at which a point is consumed, metres, above 0 and at most `attraction_m` (otherwise that is
+    /// raised to it, with a warning), default 0.4.
     #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub kill_m: f64,
     /// Length D of one step, metres; default half of `kill_m`. Above twice `kill_m`, points can be stepped over.
     #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub step_m: Option<f64>,
-    /// What else pulls: light, gravity, wind. Default none.
+    /// Other directions of growth: light, gravity, wind. Default none.
     pub tropisms: Vec<Tropism>,
     /// Share of the last direction kept in each step, 0 to 10, default 0.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub inertia: f64,
-    /// A point steers one step before it is consumed, as in Yang et al. (2019), instead of being consumed as soon as a joint
-    /// comes near (Runions). Needed where `kill_m` is near `attraction_m`: else hardly any point steers. Default
-    /// false.
+    /// Whether a point steers one step before it is consumed, as in Yang et al. (2019), instead of being consumed as
+    /// soon as a joint comes near (Runions). Needed if `kill_m` is near `attraction_m`: otherwise hardly any point
+    /// steers. Default false.
     pub steer_before_kill: bool,
     /// Growth stops, with a warning, at this many joints; 1 to 2^31, default 4 million.
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
@@ -56,31 +56,31 @@ impl Default for ColonizeSpec {
     }
 }
 
-/// What became of an attraction point.
+/// Fate of an attraction point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointFate {
     /// Consumed by a joint.
     Reached(JointId),
     /// Not reached: too far from every joint, or hidden behind obstacles.
     Unreached,
-    /// It lies in an obstacle, of this index, or in its clearance (`None`).
+    /// It lies in the obstacle of this index, or in the clearance of one (`None`).
     Buried(Option<usize>),
     /// It is not a finite point within 1e6 m.
     Unusable,
 }
 
-/// What colonisation made.
+/// Result of colonisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Colonized {
     /// The joints, those given first.
     pub skeleton: Skeleton,
-    /// What became of each attraction point, in the order given.
+    /// Fate of each attraction point, in the order given.
     pub fates: Vec<PointFate>,
-    /// Rounds of growth, those of the trunk included.
+    /// Rounds of growth, including those of the trunk.
     pub rounds: u32,
 }
 
-/// The numbers of a spec, checked.
+/// The checked numbers of a spec.
 #[derive(Clone, Debug)]
 struct Steps {
     attraction: f64,
@@ -129,11 +129,11 @@ impl ColonizeSpec {
 
 /// Grows trees from `roots` until every attraction point is consumed or cannot be reached.
 ///
-/// `roots`: one tree each; they compete. `attractors`: any points; those that are not finite or lie in an obstacle
-/// are left out. Guaranteed: it ends; every point has a [`PointFate`]; a clean `validate()`; no joint in an obstacle or
-/// its clearance; the same bits everywhere. Where growth stalls (a joint pulled to two sides alike), the joint
-/// grows straight to its nearest point. A root that perceives nothing first grows a trunk: up, then to the nearest
-/// point. Not guaranteed: that all points are reached. Cost: about linear in points and joints.
+/// `roots`: one tree each; they compete. `attractors`: any points; those that are not finite or lie in an obstacle are
+/// left out. Guaranteed: it ends; every point has a [`PointFate`]; a clean `validate()`; no joint in an obstacle or its
+/// clearance; the same bits everywhere. If growth stalls (a joint is pulled equally to two sides), the joint grows
+/// straight to its nearest point. A root that perceives nothing first grows a trunk: up, then to the nearest point. Not
+/// guaranteed: that all points are reached. Cost: about linear in points and joints.
 ///
 /// # Errors
 /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
@@ -160,7 +160,7 @@ pub fn colonize(
     colonize_from(plant_roots(roots, obstacles, run)?, attractors, obstacles, spec, run, report)
 }
 
-/// The skeleton of roots alone.
+/// Makes the skeleton of roots alone.
 pub(crate) fn plant_roots(
     roots: &[DVec3],
     obstacles: &Obstacles,
@@ -185,7 +185,7 @@ pub(crate) fn plant_roots(
     Ok(skeleton)
 }
 
-/// Trunks and limbs along the lines that crowns drew, before anything else grows.
+/// Grows trunks and limbs along the lines that crowns drew, before anything else.
 pub(crate) fn grow_frame(
     skeleton: Skeleton,
     crowns: &[Crown],
@@ -199,7 +199,7 @@ pub(crate) fn grow_frame(
     if lines.is_empty() {
         return Ok(skeleton);
     }
-    // As narrow as lines can be followed: nobody may cut across to the next limb.
+    // As narrow as lines can be followed: no branch may cut across to the next limb.
     let spec = ColonizeSpec {
         attraction_m: 2.4 * step,
         kill_m: 1.05 * step,
@@ -207,12 +207,12 @@ pub(crate) fn grow_frame(
         ..ColonizeSpec::default()
     };
     let part = (0.0, 0.05 * crate::GROWN);
-    // What lies in obstacles is no news.
+    // Warnings about points in obstacles are dropped here.
     let mut told = Report::default();
     Ok(colonize_part(skeleton, &lines, obstacles, &spec, part, run, &mut told)?.skeleton)
 }
 
-/// A bole from a root straight up, around obstacles, until it is so high; its top.
+/// Grows a bole from a root straight up, around obstacles, to a height, and returns its top.
 ///
 /// # Errors
 /// [`GrowthError::OverBudget`].
@@ -247,9 +247,9 @@ pub(crate) fn grow_bole(
     Ok(top)
 }
 
-/// As [`colonize`], from a skeleton that is there already: its joints stay as they are, and all may grow on.
+/// As [`colonize`], from an existing skeleton: its joints stay as they are, and all may grow on.
 ///
-/// This is how later life cycles, and branches after pruning, grow.
+/// Later life cycles, and branches after pruning, grow in this way.
 ///
 /// # Errors
 /// As [`colonize`].
@@ -313,10 +313,10 @@ pub(crate) fn colonize_part(
     Ok(Colonized { skeleton, fates, rounds })
 }
 
-/// Cuts off `joint` and all that grew from it, and lets the tree grow into the room that this leaves.
+/// Cuts off `joint` and all that grew from it, and lets the tree grow into the freed room.
 ///
-/// `grown` and `attractors`: the result of [`colonize`] and what it was given. Guaranteed: what was not cut off stays
-/// where it is; the points that the cut branch had consumed attract again, all others do not.
+/// `grown` and `attractors`: the result of [`colonize`] and its input. Guaranteed: the remaining joints stay in place;
+/// the points that the cut branch had consumed attract again, all others do not.
 ///
 /// # Errors
 /// As [`colonize`].
@@ -361,7 +361,7 @@ pub fn regrow(
     Ok(Colonized { fates, ..again })
 }
 
-/// Steps that leap far over everything make no tree.
+/// Rejects steps that leap far over everything and make no tree.
 fn sane_step(
     skeleton: &Skeleton,
     points: &[DVec3],
@@ -409,7 +409,7 @@ fn tell(fates: &[PointFate], report: &mut Report) {
     }
 }
 
-/// The points that have a joint as their nearest; together in memory, because they change together.
+/// The points that have a joint as their nearest; stored together, because they change together.
 #[derive(Clone, Copy, Default)]
 struct Pull {
     /// Sum of unit vectors to them.
@@ -418,7 +418,7 @@ struct Pull {
     queued: bool,
 }
 
-/// What each joint is pulled by, and which joints' pull has changed since they last grew.
+/// The pull on each joint, and the joints whose pull has changed since they last grew.
 struct Load {
     pulls: Vec<Pull>,
     queue: Vec<u32>,
@@ -456,18 +456,18 @@ impl Load {
         self.first[parent] = joint;
     }
 
-    /// A point that pulled with this unit vector leaves a joint.
+    /// Removes a point that pulled with this unit vector from a joint.
     fn lose(&mut self, joint: u32, pulled: DVec3) {
         let pull = &mut self.pulls[joint as usize];
         pull.count -= 1;
-        // Without points the sum is exactly zero, not the dust of many additions.
+        // Without points the sum is exactly zero, not the rounding error of many additions.
         pull.sum = if pull.count == 0 { DVec3::ZERO } else { pull.sum - pulled };
         if !core::mem::replace(&mut pull.queued, true) {
             self.queue.push(joint);
         }
     }
 
-    /// A point in that direction comes to a joint.
+    /// Adds a point in that direction to a joint.
     fn gain(&mut self, joint: u32, pulls: DVec3) {
         let pull = &mut self.pulls[joint as usize];
         pull.count += 1;
@@ -490,14 +490,14 @@ struct Colony<'a> {
     obstacles: &'a Obstacles,
     steps: Steps,
     birth: u32,
-    /// Joints of this round that no point has chosen between yet.
+    /// Joints of this round that have not been offered to the points yet.
     fresh: Vec<u32>,
     /// Points that steer once more before they are consumed.
     doomed: Vec<u32>,
 }
 
 impl Colony<'_> {
-    /// Lets the points choose between the joints that are there, and grows a trunk where a root sees none.
+    /// Assigns the points to the existing joints, and grows a trunk from a root that perceives none.
     fn settle(&mut self, run: &Run<'_>) -> Result<(), GrowthError> {
         for j in 0..self.skeleton.len() {
             if j % 1024 == 0 {
@@ -521,7 +521,7 @@ impl Colony<'_> {
         Ok(())
     }
 
-    /// Up to the height of the nearest point, then towards it, until the tip perceives something.
+    /// Grows up to the height of the nearest point, then towards it, until the tip perceives something.
     fn grow_trunk(&mut self, root: u32, run: &Run<'_>) -> Result<(), GrowthError> {
         let from = self.skeleton.position[root as usize];
         let nearest = |p: DVec3| {
@@ -538,7 +538,7 @@ impl Colony<'_> {
             straight,
             "make step_m (or kill_m, of which it is half) longer or put the attraction points nearer to the root",
         )?;
-        // Three times the straight way leaves room to go up first and around things.
+        // Three times the straight distance leaves room to go up first and around obstacles.
         let budget = 3.0 * from.distance(goal) / self.steps.step + 8.0;
         let (mut tip, mut heading, mut steps) = (root, DVec3::Y, 0.0);
         while self.load.pulls[tip as usize].count == 0
@@ -561,7 +561,7 @@ impl Colony<'_> {
 
     fn grow(&mut self, part: (f64, f64), run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
         let all = self.field.alive().max(1) as f64;
-        // Twice the rounds that the farthest perceived point takes: then growth goes in circles.
+        // Twice the rounds to the farthest perceived point: after that growth goes in circles.
         let patience = 2.0 * self.steps.attraction / self.steps.step + 2.0;
         let mut quiet = 0.0;
         let mut queue = Vec::with_capacity(self.load.queue.capacity());
@@ -607,7 +607,7 @@ impl Colony<'_> {
         Ok(())
     }
 
-    /// Eq 1 and 2: one step along the mean direction of the points that are nearest to this joint.
+    /// Grows one step along the mean direction of the points that are nearest to this joint (Eq 1 and 2).
     fn sprout(&mut self, joint: u32) {
         let j = joint as usize;
         let Pull { sum, count, .. } = self.load.pulls[j];
@@ -622,7 +622,7 @@ impl Colony<'_> {
         }
     }
 
-    /// Adds a child one step away, around obstacles, unless there is one already; its row.
+    /// Adds a child one step away, around obstacles, unless it exists already; returns its row.
     fn push(&mut self, parent: u32, wish: DVec3, step: f64) -> Option<u32> {
         let from = self.skeleton.position[parent as usize];
         let direction =
@@ -665,7 +665,7 @@ impl Colony<'_> {
         self.settle_points();
     }
 
-    /// Lets the points choose whether this joint is nearer to them than what they had.
+    /// Lets points that are nearer to this joint than to their own switch to it.
     fn offer(&mut self, joint: u32) {
         let Self { field, skeleton, obstacles, .. } = self;
         let at = skeleton.position[joint as usize];
@@ -676,7 +676,7 @@ impl Colony<'_> {
         }
     }
 
-    /// Ends a round: moves the pull of points that changed hands, and consumes those that were reached.
+    /// Ends a round: moves the pull of points that changed their joint, and consumes those that were reached.
     fn settle_points(&mut self) {
         let Self { field, load, skeleton, fates, steps, doomed, .. } = self;
         let kill2 = steps.kill * steps.kill;
@@ -698,8 +698,8 @@ impl Colony<'_> {
         });
     }
 
-    /// Breaks a stall: every joint with points grows straight to the nearest of them. A point that does not come
-    /// nearer is given up, so that each call gets on. Whether there was anything to do.
+    /// Breaks a stall: every joint with points grows straight to the nearest of them. A point that does not come nearer
+    /// is given up, so that each call makes progress. Returns whether there was anything to do.
     fn go_straight(&mut self) -> bool {
         self.offer_fresh();
         let mut goals: Vec<(u32, f64, u32, DVec3)> = self

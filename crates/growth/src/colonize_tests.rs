@@ -20,7 +20,7 @@ fn ball(n: usize) -> Vec<DVec3> {
     region.scatter(n, 0.0, Seed::new(3), |_| true).expect("room")
 }
 
-/// The method as it is printed, without grid, queue or memory.
+/// Runs the published method without grid, queue or memory.
 fn by_the_book(root: DVec3, points: &[DVec3], di: f64, dk: f64, step: f64, rounds: usize) -> Vec<DVec3> {
     let mut joints = vec![root];
     let mut left: Vec<DVec3> =
@@ -57,7 +57,7 @@ fn the_fast_way_grows_what_the_printed_way_grows() {
     let points = ball(300);
     let root = DVec3::new(0.0, 1.8, 0.0);
     let spec = ColonizeSpec { attraction_m: 1.0, kill_m: 0.25, step_m: Some(0.1), ..Default::default() };
-    // Beyond 40 rounds stalls begin, which the printed way does not break.
+    // Beyond 40 rounds stalls begin, which the published method does not break.
     let (fast, _) = grow(&[root], &points, &Obstacles::none(), &spec);
     let mut slow = by_the_book(root, &points, 1.0, 0.25, 0.1, 30);
     let mut fast = fast.skeleton.at_age(30).position;
@@ -89,7 +89,7 @@ fn every_point_of_a_ball_is_reached() {
 
 #[test]
 fn a_tie_between_two_points_is_broken() {
-    // Both pull alike: the printed way grows straight on between them for ever.
+    // Both pull equally: the published method grows straight on between them for ever.
     let points = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(-1.0, 0.0, 0.0)];
     let spec = ColonizeSpec { attraction_m: 2.0, kill_m: 0.2, ..Default::default() };
     let (grown, report) = grow(&[DVec3::ZERO], &points, &Obstacles::none(), &spec);
@@ -128,7 +128,7 @@ fn trees_share_the_space_between_them() {
 
 #[test]
 fn growth_goes_around_a_wall_and_reaches_what_is_behind() {
-    // A wall that stands through the crown and is open at its sides and top.
+    // A wall through the crown that is open at its sides and top.
     let wall = Obstacle::Box { min: DVec3::new(0.4, 0.0, -1.0), max: DVec3::new(0.6, 4.5, 1.0) };
     let obstacles = Obstacles::new(&[wall], 0.05).expect("sound");
     let spec = ColonizeSpec { attraction_m: 1.0, kill_m: 0.25, ..Default::default() };
@@ -233,7 +233,7 @@ fn a_pruned_branch_grows_again_and_the_rest_stays() {
 }
 
 fn place() -> impl Strategy<Value = DVec3> {
-    // A few coordinates come again and again, so that points coincide, line up and tie.
+    // A few coordinates recur, so that points coincide, line up and tie.
     let c = prop_oneof![
         4 => -3.0..3.0_f64,
         2 => (-3..=3_i32).prop_map(f64::from),
@@ -284,7 +284,7 @@ proptest! {
                 PointFate::Unreached => {
                     let near = grown.skeleton.position.iter().map(|q| q.distance(*p)).fold(f64::INFINITY, f64::min);
                     prop_assert!(near > kill_m || walled, "{} {}", near, kill_m);
-                    // Without walls whatever is perceived is reached, as long as steps do not pass it by.
+                    // Without walls every perceived point is reached, as long as steps do not pass it by.
                     let perceived = near < attraction_m.max(kill_m) * (1.0 - 1e-9);
                     prop_assert!(walled || !perceived, "{} at {}", p, near);
                 }

@@ -12,14 +12,14 @@ use crate::envelope::crowns;
 use crate::error::GrowthError;
 use crate::{ColonizeSpec, Envelope, Obstacles, PointFate, Skeleton, Tropism, VariationSpec};
 
-/// Trees after Yang et al. (2019). Lengths in metres; places relative to the root.
+/// Trees after Yang et al. (2019). Lengths in metres; positions relative to the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CompetitionSpec {
     /// The space of the crown.
     pub envelope: Envelope,
-    /// The space that the first cycle fills, if it is another: a narrow one makes a trunk with few limbs, on which
-    /// later cycles grow the branches. Default none.
+    /// Space that the first cycle fills, if it differs: a narrow one makes a trunk with few limbs, on which later
+    /// cycles grow the branches. Default none.
     pub first_envelope: Option<Envelope>,
     /// Share of the envelope left empty inside, 0 to 0.99, default 0.
     #[schemars(range(min = 0.0, max = 0.99))]
@@ -33,7 +33,7 @@ pub struct CompetitionSpec {
     /// Absorption distance `d_k`, default 0.4.
     #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub kill_m: f64,
-    /// Step D, default half of `d_k` (the paper does not give it; Runions asks for `d_k` of 2 D or more).
+    /// Step D, default half of `d_k` (the paper does not give it; Runions requires `d_k` of 2 D or more).
     #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub step_m: Option<f64>,
     /// Life cycles, 1 to 20, default 2.
@@ -57,7 +57,7 @@ pub struct CompetitionSpec {
     /// Factor on `d_i`, `d_k`, D and the ball from one cycle to the next, 0.1 to 1, default 1 (as in the paper).
     #[schemars(range(min = 0.1, max = 1.0))]
     pub shrink: f64,
-    /// What else pulls. Default none.
+    /// Other directions of growth. Default none.
     pub tropisms: Vec<Tropism>,
     /// Share of the last direction kept in each step, 0 to 10, default 0.
     #[schemars(range(min = 0.0, max = 10.0))]
@@ -94,8 +94,8 @@ impl Default for CompetitionSpec {
 }
 
 impl CompetitionSpec {
-    /// Table 1, pine: N 2870, `d_i` 0.9 m, `d_k` 0.5 m, lifespan 2. Envelope, K and M are ours: the first cycle makes the
-    /// stem, the second the side branches, as the paper says.
+    /// Returns the pine of Table 1: N 2870, `d_i` 0.9 m, `d_k` 0.5 m, lifespan 2. Envelope, K and M are ours: the first
+    /// cycle makes the stem, the second the side branches, as in the paper.
     pub fn pine() -> Self {
         Self {
             envelope: Envelope::Cone { base: DVec3::new(0.0, 1.2, 0.0), radius_m: 2.2, height_m: 7.3 },
@@ -118,7 +118,8 @@ impl CompetitionSpec {
         }
     }
 
-    /// Table 1, Terminalia mantaly: N 525, `d_i` 0.8 m, `d_k` 0.8 m, lifespan 3. Envelope, K and M are ours: flat tiers.
+    /// Returns the Terminalia mantaly of Table 1: N 525, `d_i` 0.8 m, `d_k` 0.8 m, lifespan 3. Envelope, K and M are
+    /// ours: flat tiers.
     pub fn terminalia() -> Self {
         Self {
             envelope: Envelope::Cylinder { base: DVec3::new(0.0, 1.8, 0.0), radius_m: 2.4, height_m: 5.0 },
@@ -142,7 +143,7 @@ impl CompetitionSpec {
         }
     }
 
-    /// Table 1, Chinese fir: N 1543, `d_i` 1.0 m, `d_k` 0.4 m, lifespan 3. Envelope, K and M are ours.
+    /// Returns the Chinese fir of Table 1: N 1543, `d_i` 1.0 m, `d_k` 0.4 m, lifespan 3. Envelope, K and M are ours.
     pub fn chinese_fir() -> Self {
         Self {
             envelope: Envelope::Cone { base: DVec3::new(0.0, 1.0, 0.0), radius_m: 1.9, height_m: 10.0 },
@@ -167,7 +168,7 @@ impl CompetitionSpec {
         }
     }
 
-    /// The oak that the paper compares methods with (Table 2); all numbers are ours.
+    /// Returns the oak with which the paper compares methods (Table 2); all numbers are ours.
     pub fn oak() -> Self {
         Self {
             envelope: Envelope::Ellipsoid {
@@ -186,7 +187,7 @@ impl CompetitionSpec {
         }
     }
 
-    /// The growth of cycle `cycle`, from 0.
+    /// Returns the growth settings of cycle `cycle`, from 0.
     fn cycle(&self, cycle: u32) -> ColonizeSpec {
         let scale = (0..cycle).fold(1.0, |s, _| s * self.shrink);
         ColonizeSpec {
@@ -202,18 +203,18 @@ impl CompetitionSpec {
     }
 }
 
-/// What one life cycle did.
+/// Figures of one life cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cycle {
-    /// Points that it had.
+    /// Number of its points.
     pub points: usize,
-    /// Points consumed.
+    /// Number of consumed points.
     pub reached: usize,
-    /// Joints at its end.
+    /// Number of joints at its end.
     pub joints: usize,
 }
 
-/// What competition made.
+/// Result of competition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Competed {
     /// All trees.
@@ -222,7 +223,8 @@ pub struct Competed {
     pub cycles: Vec<Cycle>,
 }
 
-/// Grows trees by competition for space (Yang et al. 2019, section 3.1), one from each root; they compete with one another.
+/// Grows trees by competition for space (Yang et al. 2019, section 3.1), one from each root; they compete with one
+/// another.
 ///
 /// Guaranteed: it ends; a clean `validate()`; no joint in an obstacle; the skeleton after cycle n does not depend on
 /// the lifespan. Points that cannot be reached are warned of, by cycle. Cost: about linear in points and joints.
@@ -251,7 +253,7 @@ pub fn compete(
     compete_each(roots, obstacles, spec, &VariationSpec::default(), seed, run, report)
 }
 
-/// As [`compete`], by trees that differ.
+/// As [`compete`], for trees that differ.
 pub(crate) fn compete_each(
     roots: &[DVec3],
     obstacles: &Obstacles,
@@ -288,7 +290,7 @@ pub(crate) fn compete_each(
             }
             points
         } else {
-            // A point may lie in the crown of any tree: neighbours compete for what both can reach.
+            // A point may lie in the crown of any tree: neighbours compete for points within reach of both.
             let own = || roots.iter().zip(crown.iter().cycle());
             let inside = |p: DVec3| own().any(|(r, c)| c.region.contains(p - *r)) && obstacles.free(p);
             let chosen = choose(&skeleton, spec, stem_age, at);
@@ -301,7 +303,7 @@ pub(crate) fn compete_each(
         let part = (share(cycle), share(cycle + 1));
         let grown = colonize_part(skeleton, &points, obstacles, &spec.cycle(cycle), part, run, &mut told)?;
         for w in told.warnings {
-            // The last cycles' warnings about the numbers are the first one's.
+            // Warnings about the numbers repeat in every cycle: only those of the first are kept.
             if !report.warnings.iter().any(|old| old.code == w.code && old.message == w.message) {
                 report.warnings.push(Warning { message: format!("cycle {}: {}", cycle + 1, w.message), ..w });
             }
@@ -319,7 +321,7 @@ pub(crate) fn compete_each(
     Ok(Competed { skeleton, cycles })
 }
 
-/// M points in a ball around each of K joints.
+/// Scatters M points in a ball around each of K joints.
 fn later_points(
     skeleton: &Skeleton,
     chosen: &[usize],
@@ -336,7 +338,7 @@ fn later_points(
         let centre = skeleton.position[joint];
         let mut stream = seed.child(joint as u64).stream(Draw::Attractors);
         let mut left = spec.points_per_joint;
-        // A ball half outside needs twice the tries; one that is all outside gets nothing.
+        // A ball half outside needs twice the tries; one entirely outside gets no points.
         for _ in 0..spec.points_per_joint.saturating_mul(8) {
             if left == 0 {
                 break;
@@ -355,17 +357,17 @@ fn later_points(
     points
 }
 
-/// K joints at random, each with an own number so that few change when the tree changes a little.
+/// Chooses K joints at random, each by a number of its own so that few change when the tree changes slightly.
 fn choose(skeleton: &Skeleton, spec: &CompetitionSpec, stem_age: u32, seed: Seed) -> Vec<usize> {
     let children = skeleton.children();
     let on_tier = |j: usize| {
         spec.tier_m.is_none_or(|tier| {
             let y = skeleton.position[j].y / tier;
-            // A seventh of the distance up and down: whorls are not razor-thin.
+            // A seventh of the distance up and down: whorls are not perfectly thin.
             skeleton.birth[j] > stem_age || (y - (y + 0.5).floor()).abs() < 0.15
         })
     };
-    // A root is no place for branches, and a tip in a tier would only be lengthened.
+    // A root bears no branches, and a tip in a tier would only be lengthened.
     let may_bear = |j: &usize| skeleton.parent[*j].is_some() && (children[*j] > 0 || spec.tier_m.is_none());
     let joints = (0..skeleton.len()).filter(may_bear).filter(|&j| on_tier(j));
     joints.filter(|&j| seed.child(j as u64).stream(Draw::TwigPlace).chance(spec.joints_share)).collect()

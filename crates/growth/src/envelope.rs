@@ -22,16 +22,16 @@ use crate::variation::{Habit, VariationSpec};
 pub enum Envelope {
     /// A ball.
     Sphere {
-        /// Its middle.
+        /// Its centre.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         centre: DVec3,
-        /// Above 0.
+        /// Its radius, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
     },
     /// A ball stretched along the axes.
     Ellipsoid {
-        /// Its middle.
+        /// Its centre.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         centre: DVec3,
         /// Half its extents, each above 0.
@@ -40,31 +40,31 @@ pub enum Envelope {
     },
     /// An upright cone, its point up.
     Cone {
-        /// Middle of its base.
+        /// Centre of its base.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
         /// Radius of its base, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
-        /// Above 0.
+        /// Its height, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         height_m: f64,
     },
     /// An upright cylinder.
     Cylinder {
-        /// Middle of its base.
+        /// Centre of its base.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
-        /// Above 0.
+        /// Its radius, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
-        /// Above 0.
+        /// Its height, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         height_m: f64,
     },
     /// A surface of revolution about the vertical through `base`.
     Revolution {
-        /// Where the heights of the profile start.
+        /// Origin of the heights of the profile.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
         /// `(radius, height)`, at least 2 points, heights rising, radii 0 or more.
@@ -73,7 +73,7 @@ pub enum Envelope {
     },
     /// A closed outline drawn in the plane z = `centre_z`; across the plane each height is as deep as it is wide.
     Outline {
-        /// At least 3 points.
+        /// The outline, at least 3 points.
         #[schemars(with = "Vec<[f64; 2]>", inner(inner(range(min = -1e6, max = 1e6))), extend("x-unit" = "m"))]
         polygon: Vec<DVec2>,
         /// The plane of the drawing.
@@ -83,7 +83,7 @@ pub enum Envelope {
         #[schemars(range(min = 0.001, max = 1000.0))]
         depth: f64,
     },
-    /// A closed mesh. Small holes and inverted faces are borne (winding number).
+    /// A closed mesh. Small holes and inverted faces are tolerated (winding number).
     Mesh {
         /// Vertices.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
@@ -93,27 +93,27 @@ pub enum Envelope {
     },
     /// A cloud of points: the space within `reach_m` of any of them.
     Points {
-        /// At least one usable point.
+        /// The points, at least one of them usable.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
         points: Vec<DVec3>,
-        /// Above 0.
+        /// Distance from a point up to which the space counts, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         reach_m: f64,
     },
-    /// Masses of foliage on limbs that each seed draws anew.
+    /// Masses of foliage on limbs, drawn anew for each seed.
     Limbs(LimbsSpec),
 }
 
 spec::schemas!(Envelope => crate::TreeSpec, "/$defs/Envelope");
 
 impl Default for Envelope {
-    /// The crown of a young broadleaf tree: a ball of 2 m radius, its middle 4 m above the ground.
+    /// Returns the crown of a young broadleaf tree: a ball of 2 m radius, its middle 4 m above the ground.
     fn default() -> Self {
         Self::Sphere { centre: DVec3::new(0.0, 4.0, 0.0), radius_m: 2.0 }
     }
 }
 
-/// An envelope made ready to be asked.
+/// An envelope prepared for queries.
 ///
 /// ```
 /// use glam::DVec3;
@@ -129,9 +129,9 @@ pub struct Region {
     form: Arc<Form>,
     lo: DVec3,
     hi: DVec3,
-    /// The tree whose crown it is, where that differs from what was drawn up.
+    /// Habit of the tree, if it differs from the drawn envelope.
     habit: Option<Habit>,
-    /// How much more room it has than what was drawn up.
+    /// Factor on the room of the drawn envelope.
     more: f64,
 }
 
@@ -142,7 +142,7 @@ enum Form {
     Outline(Vec<DVec2>, f64, f64),
     Mesh(Solid),
     Points(KdTree, f64),
-    /// Flattened by the last number, in which the masses are balls.
+    /// Flattened by the last number, so that the masses are balls.
     Masses(KdTree, f64, f64),
 }
 
@@ -150,11 +150,11 @@ enum Form {
 #[derive(Clone, Debug)]
 pub(crate) struct Crown {
     pub(crate) region: Region,
-    /// Points along trunk and limbs, which it grows before all else.
+    /// Points along trunk and limbs, which the tree grows first.
     pub(crate) lines: Vec<DVec3>,
 }
 
-/// The room of each root's tree: one for all where they do not differ. `step`: of growth.
+/// Returns the room of each root's tree: one for all if they do not differ. `step`: of growth.
 pub(crate) fn crowns(
     envelope: &Envelope,
     variation: &VariationSpec,
@@ -172,7 +172,7 @@ pub(crate) fn crowns(
     if variation.is_none() {
         return Ok(vec![Crown { region, lines: Vec::new() }]);
     }
-    let crown = |root| Crown { region: region.of(variation.habit(seed, root)), lines: Vec::new() };
+    let crown = |root| Crown { region: region.with_habit(variation.habit(seed, root)), lines: Vec::new() };
     Ok((0..roots as u64).map(crown).collect())
 }
 
@@ -188,12 +188,13 @@ fn limbs_crown(limbs: &LimbsSpec, habit: &Habit, step: f64) -> Crown {
 }
 
 impl Envelope {
-    /// Checks the numbers and builds what fast answers need.
+    /// Checks the numbers and builds the tables for fast queries.
     ///
     /// Cost: linear in points, n log n in triangles.
     ///
     /// # Errors
-    /// [`GrowthError::Range`] for numbers out of range, [`GrowthError::Field`] for points and outlines that are none, [`GrowthError::Mesh`] for a mesh without volume.
+    /// [`GrowthError::Range`] for numbers out of range, [`GrowthError::Field`] for invalid points and outlines,
+    /// [`GrowthError::Mesh`] for a mesh without volume.
     pub fn prepare(&self) -> Result<Region, GrowthError> {
         spec::check(self)?;
         let form = match self {
@@ -212,7 +213,7 @@ impl Envelope {
                 Form::Revolution(*base, profile.clone())
             }
             Self::Outline { polygon, centre_z_m, depth } => {
-                // Each point scattered looks at each point of the outline.
+                // Each scattered point is tested against each point of the outline.
                 within("points of envelope.polygon", polygon.len() as f64, 3.0, 1e4, "3 to 10,000")?;
                 if polygon.len() < 3 || geom::signed_area(polygon).abs() < 1e-9 {
                     let value = geom::signed_area(polygon);
@@ -238,7 +239,7 @@ impl Envelope {
             }
             Self::Limbs(limbs) => {
                 check_profile(&limbs.profile)?;
-                // As the first seed draws it; growth asks for each tree's own.
+                // As drawn by the first seed; growth uses each tree's own.
                 let habit = VariationSpec::default().habit(Seed::new(0), 0);
                 return Ok(limbs_crown(limbs, &habit, limbs.mass_m).region);
             }
@@ -247,7 +248,8 @@ impl Envelope {
         Ok(Region { form: Arc::new(form), lo, hi, habit: None, more: 1.0 })
     }
 
-    /// What it fills as a whole: masses on limbs become the profile that they stand in. For growth that finds limbs itself.
+    /// Returns the space that it fills as a whole: masses on limbs become their enclosing profile. For growth that
+    /// finds limbs itself.
     #[must_use]
     pub fn whole(&self) -> Self {
         match self {
@@ -303,14 +305,14 @@ fn check_profile(profile: &[DVec2]) -> Result<(), GrowthError> {
 }
 
 impl Region {
-    /// The same region as a tree has it that differs from what was drawn up.
-    pub(crate) fn of(&self, habit: Habit) -> Self {
+    /// Returns the same region for a tree with another habit.
+    pub(crate) fn with_habit(&self, habit: Habit) -> Self {
         let (lo, hi) = habit.around(self.lo, self.hi);
         let more = habit.volume();
         Self { form: Arc::clone(&self.form), lo, hi, habit: Some(habit), more }
     }
 
-    /// Whether a point lies in the envelope (points on its surface may go either way).
+    /// Whether a point lies in the envelope (points on its surface may count either way).
     #[inline]
     pub fn contains(&self, p: DVec3) -> bool {
         if !(p.cmpge(self.lo).all() && p.cmple(self.hi).all()) {
@@ -350,9 +352,9 @@ impl Region {
         }
     }
 
-    /// Whether a ball surely lies in the envelope; some that do are not known to.
+    /// Whether a ball certainly lies in the envelope; false also in some cases in which it does.
     pub(crate) fn contains_ball(&self, p: DVec3, radius: f64) -> bool {
-        // Points on the surface may go either way.
+        // Points on the surface may count either way.
         let radius = radius * (1.0 + 1e-9);
         if !((p - radius).cmpge(self.lo).all() && (p + radius).cmple(self.hi).all()) {
             return false;
@@ -365,7 +367,7 @@ impl Region {
                 ((p - *centre) / *radii).length() + radius / radii.min_element() <= 1.0
             }
             Form::Revolution(base, profile) => {
-                // As wide as the ball at every height of it: at its ends, and where the profile bends between them.
+                // As wide as the ball at each of its heights: at its ends, and where the profile bends between them.
                 let q = p - *base;
                 let wide = DVec2::new(q.x, q.z).length() + radius;
                 let inside = |y: f64, r: f64| (y - q.y).abs() > radius || r >= wide;
@@ -382,17 +384,18 @@ impl Region {
         }
     }
 
-    /// Lower and upper corner of the box around the envelope.
+    /// Returns the lower and upper corner of the box around the envelope.
     pub const fn bounds(&self) -> (DVec3, DVec3) {
         (self.lo, self.hi)
     }
 
-    /// How high above the origin the envelope begins, metres; 0 where it holds the origin or nothing is above it.
+    /// Returns the height above the origin at which the envelope begins, metres; 0 if it contains the origin or nothing
+    /// is above it.
     pub(crate) fn foot(&self) -> f64 {
         if self.contains(DVec3::ZERO) {
             return 0.0;
         }
-        // A hundredth of its height is fine enough for where a bole ends.
+        // A hundredth of its height is fine enough for the end of a bole.
         let step = 0.01 * (self.hi.y - self.lo.y).max(1e-9);
         let mut y = self.lo.y.max(0.0);
         while y < self.hi.y && !self.contains(DVec3::Y * y) {
@@ -401,18 +404,18 @@ impl Region {
         if y < self.hi.y { y } else { 0.0 }
     }
 
-    /// So many points as make a region of a tree as dense as `count` make the one that was drawn up; at least 1.
+    /// Returns the number of points that makes this region as dense as `count` points make the drawn one; at least 1.
     pub(crate) fn count(&self, count: u32) -> usize {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few times a u32")]
         let count = (f64::from(count) * self.more).round().max(1.0) as usize;
         count
     }
 
-    /// `count` points spread evenly at random in the envelope where `free` holds.
+    /// Scatters `count` points evenly at random in the envelope where `free` holds.
     ///
-    /// `hollow`, 0 to 0.99: points whose place is still inside when moved away from the middle by `1 / hollow` are
-    /// left out, so that only a shell is filled (Runions 2007, Fig 7); 0 fills all. Guaranteed: the first points
-    /// do not depend on `count`. Cost: about `count` times box over envelope volume.
+    /// `hollow`, 0 to 0.99: points that remain inside when moved away from the centre by `1 / hollow` are left out, so
+    /// that only a shell is filled (Runions 2007, Fig 7); 0 fills all. Guaranteed: the first points do not depend on
+    /// `count`. Cost: about `count` times box over envelope volume.
     ///
     /// # Errors
     /// [`GrowthError::NoRoom`] if fewer than all points find a place in 2000 + 200 `count` tries.
@@ -433,8 +436,7 @@ impl Region {
             if points.len() >= count {
                 break;
             }
-            // At half the rate that would do, and eleven times chance's own spread away from it, the rest of the
-            // tries is wasted.
+            // At half the required rate, and eleven standard deviations away from it, the remaining tries are wasted.
             if tried == 100_000 && points.len() < 250 {
                 return Err(GrowthError::NoRoom { found: points.len(), wanted: count, tries: tried });
             }
@@ -451,7 +453,7 @@ impl Region {
     }
 }
 
-/// Where the horizontal through an inner point leaves the outline, left and right.
+/// Returns where the horizontal through an inner point leaves the outline, left and right.
 fn chord(polygon: &[DVec2], p: DVec2) -> (f64, f64) {
     let (mut left, mut right) = (f64::NEG_INFINITY, f64::INFINITY);
     for i in 0..polygon.len() {
@@ -516,7 +518,7 @@ mod tests {
                     assert!(holds && region.contains(p), "{e:?}: {radius} about {p}");
                 }
             }
-            // Most of those that do are known to.
+            // For most balls that lie inside, this is detected.
             assert!(said * 2 > held && said > 100, "{e:?}: {said} of {held}");
         }
     }

@@ -1,18 +1,24 @@
-//! What can stop growth.
+//! Errors of growth.
 
 use base::Cancelled;
 
-/// Why nothing could be grown.
+/// Reason why nothing could be grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GrowthError {
     /// The caller asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// It would have been too much.
+    /// A limit of the budget was exceeded.
     #[error(transparent)]
     OverBudget(#[from] base::OverBudget),
-    /// A step is much longer than all that is to be grown.
+    /// The light of the sky on buds cannot be computed.
+    #[error("the light of the sky on the buds cannot be computed: {why}")]
+    Light {
+        /// Why.
+        why: String,
+    },
+    /// A step is much longer than the whole tree.
     #[error(
         "steps of {step_m} m (step_m, or half of kill_m) are far longer than roots and attraction points are apart, \
          {space_m} m; make steps or kill_m shorter, or the envelope larger"
@@ -23,25 +29,25 @@ pub enum GrowthError {
         /// Diagonal of the box around roots and points, metres, to a millimetre.
         space_m: f64,
     },
-    /// A number of the spec is out of the range that its schema has.
+    /// A number of the spec is out of the range in its schema.
     #[error(transparent)]
     Range(#[from] spec::RangeFault),
-    /// Something of the spec does not go with the rest of it, or is no place or direction.
+    /// A part of the spec contradicts the rest, or is not a position or direction.
     #[error("{field} must be {range}, not {value}")]
     Field {
         /// The field.
         field: &'static str,
-        /// What it must be.
+        /// The valid range.
         range: &'static str,
         /// The value given.
         value: f64,
     },
-    /// The age lies beyond the life that is grown, where it would change nothing.
+    /// The age lies beyond the life span, where it would change nothing.
     #[error("age must be 1 to {end}, not {age}: the life of {name} that is grown ends there")]
     BeyondLife {
-        /// The species, or how the tree is called.
+        /// The species, or the name of the tree.
         name: String,
-        /// The last age, in what the spec counts ages in.
+        /// The last age, in the spec's unit of age.
         end: u32,
         /// The age given.
         age: u32,
@@ -62,29 +68,29 @@ pub enum GrowthError {
         root: usize,
         /// Index of the obstacle.
         obstacle: usize,
-        /// The word of its shape, or what it is called.
+        /// The word of its shape, or its name.
         name: String,
     },
-    /// Something is wrong with an obstacle.
+    /// An obstacle is invalid.
     #[error("obstacle {} ({name}): {fault}", .obstacle + 1)]
     Obstacle {
         /// Its index.
         obstacle: usize,
-        /// The word of its shape, its file, or what it is called.
+        /// The word of its shape, its file, or its name.
         name: String,
-        /// What is wrong.
+        /// The fault.
         fault: Box<Self>,
     },
     /// Nothing grew.
     #[error("nothing grew: {why}")]
     Nothing {
-        /// The cause, and what to change.
+        /// The cause, and the remedy.
         why: String,
     },
-    /// A mesh cannot bound anything.
+    /// The mesh cannot bound a volume.
     #[error("mesh: {0}")]
     Mesh(#[from] SolidFault),
-    /// The rules of an L-system are at fault.
+    /// The rules of an L-system are invalid.
     #[error(transparent)]
     Lsystem(#[from] LsystemError),
     /// The envelope has hardly any room for attractors.
@@ -102,21 +108,21 @@ pub enum GrowthError {
     },
 }
 
-/// What is wrong with a mesh that should bound a volume.
+/// Fault of a mesh that should bound a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolidFault {
     /// No triangle with an area.
     #[error("it has no triangle with an area")]
     Empty,
-    /// A triangle names a vertex that is not there.
+    /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex}, but there are {vertices}")]
     Index {
         /// The triangle.
         triangle: usize,
         /// The vertex it names.
         vertex: u32,
-        /// How many there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A vertex is not a finite point.
@@ -127,7 +133,7 @@ pub enum SolidFault {
     },
 }
 
-/// Farther than this from the origin nothing grows: 1e6 m leaves a tenth of a nanometre of resolution.
+/// Largest distance from the origin at which anything grows: 1e6 m leaves a tenth of a nanometre of resolution.
 pub(crate) const FAR_M: f64 = 1e6;
 
 /// Fails unless `value` lies in `lo..=hi`.
@@ -141,28 +147,28 @@ pub(crate) fn within(
     if (lo..=hi).contains(&value) { Ok(value) } else { Err(GrowthError::Field { field, range, value }) }
 }
 
-/// What is wrong with an L-system.
+/// Fault of an L-system.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LsystemError {
     /// A line cannot be read.
     #[error("line {line}: {why}")]
     Syntax {
-        /// From 1.
+        /// The line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The fault.
         why: RuleFault,
     },
     /// There is no axiom.
     #[error("there is no axiom: a line `axiom = ...` is needed")]
     NoAxiom,
-    /// The string explodes.
+    /// The string grows beyond all limits.
     #[error(
         "the rule `{rule}` in line {line} lets the string explode: in step {step} it had written {made} modules when \
          the limit of {most} was passed; take fewer steps or a condition that ends it"
     )]
     TooLarge {
-        /// The rule that wrote most.
+        /// The rule that wrote the most modules.
         rule: String,
         /// Its line, from 1.
         line: usize,
@@ -181,9 +187,9 @@ pub enum LsystemError {
         listed(rules)
     )]
     NoMatch {
-        /// The modules that were left, with their counts of numbers.
+        /// The modules that remained, with their counts of numbers.
         there: Vec<(char, usize)>,
-        /// What the rules are for.
+        /// The modules that the rules match.
         rules: Vec<(char, usize)>,
     },
     /// A number of a module is not finite.
@@ -196,17 +202,17 @@ pub enum LsystemError {
     },
 }
 
-/// What is wrong with a line of an L-system. Texts that it quotes are cut ([`base::quoted`]).
+/// Fault of a line of an L-system. Texts that it quotes are cut ([`base::quoted`]).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RuleFault {
-    /// It says nothing that is known.
+    /// It is not a known statement.
     #[error("neither a setting (name = value) nor a rule (A -> B)")]
     NoStatement,
     /// There is no such setting.
     #[error("`{0}` is no setting; constants are written `let {0} = ...`")]
     NoSetting(String),
-    /// A constant cannot be called so.
+    /// A constant cannot have this name.
     #[error("`{0}` is no name")]
     NoName(String),
     /// A setting is out of its range.
@@ -214,14 +220,14 @@ pub enum RuleFault {
     Range {
         /// The setting.
         name: &'static str,
-        /// The least.
+        /// The least value.
         least: f64,
-        /// The most.
+        /// The greatest value.
         most: f64,
         /// The value given.
         value: f64,
     },
-    /// The tropism has another number of numbers.
+    /// The tropism has a wrong count of numbers.
     #[error("tropism needs four numbers: x y z strength")]
     TropismNumbers,
     /// The tropism points nowhere.
@@ -230,7 +236,7 @@ pub enum RuleFault {
     /// The tropism's strength is not finite.
     #[error("the strength of tropism is no finite number")]
     TropismStrength,
-    /// More text than belongs there.
+    /// There is extra text.
     #[error("`{0}` is left over")]
     LeftOver(String),
     /// It has no finite value.
@@ -239,69 +245,69 @@ pub enum RuleFault {
     /// Nothing stands before the arrow.
     #[error("a rule needs a module before ->")]
     NoPredecessor,
-    /// Brackets and marks of the grammar stay as they are.
+    /// Brackets and symbols of the grammar cannot be rewritten.
     #[error("`{0}` is no module that can be rewritten")]
     NotRewritten(String),
-    /// Something that was opened is not closed.
+    /// An opening bracket is not closed.
     #[error("a {0} is missing")]
     NotClosed(char),
-    /// Something is closed that was not opened.
+    /// A closing bracket was not opened.
     #[error("a ] without its [")]
     NotOpened,
-    /// Parameters are no names, or too many.
+    /// The parameters are not names, or too many.
     #[error("`{names}`: up to {most} names were expected")]
     Parameters {
-        /// What stands there.
+        /// The text in their place.
         names: String,
-        /// The most.
+        /// The largest count.
         most: usize,
     },
-    /// Something else stands before the arrow.
+    /// Something unexpected stands before the arrow.
     #[error("`{0}`: `if`, `prob` or -> was expected")]
     NoArrow(String),
-    /// A chance below 0, or beyond all use.
+    /// A probability is below 0, or far too large.
     #[error("prob must be 0 or more, not {0}")]
     Chance(f64),
-    /// A character that is no module.
+    /// A character is not a module.
     #[error("`{0}` is no module")]
     NoModule(char),
-    /// Too many parentheses and operators inside one another.
+    /// Parentheses and operators are nested too deeply.
     #[error("nested more than {0} deep")]
     TooDeep(usize),
-    /// Digits and dots that are no number.
+    /// Digits and dots do not form a number.
     #[error("`{0}` is no number")]
     NoNumber(String),
-    /// An expression goes on with something else.
+    /// An expression continues with something unexpected.
     #[error("a number or name was expected, not `{0}`")]
     NoOperand(char),
     /// An expression ends too early.
     #[error("a number or name was expected, not the end")]
     Ends,
-    /// A name that nobody gave.
+    /// A name is unknown.
     #[error("`{0}` is no parameter, constant or function")]
     Unknown(String),
-    /// A function without parentheses.
+    /// A function lacks its parentheses.
     #[error("`{0}` is a function: it needs ( and )")]
     NotCalled(&'static str),
-    /// A function with another number of numbers.
+    /// A function has a wrong count of arguments.
     #[error("`{name}` needs {numbers} number{} and a )", if *numbers == 1 { "" } else { "s" })]
     Call {
         /// The function.
         name: &'static str,
-        /// How many numbers it takes.
+        /// Number of its arguments.
         numbers: usize,
     },
-    /// A draw from too few or too many quantiles.
+    /// A draw has too few or too many quantiles.
     #[error("`drawn` needs 2 to {most} numbers, not {count}")]
     Quantiles {
-        /// How many there are.
+        /// Number of quantiles.
         count: usize,
-        /// The most.
+        /// The largest number.
         most: usize,
     },
 }
 
-/// Modules as a sentence names them.
+/// Lists modules for a sentence.
 fn listed(modules: &[(char, usize)]) -> String {
     let one = |(symbol, numbers): &(char, usize)| match numbers {
         0 => format!("{symbol} with no number"),
@@ -311,7 +317,7 @@ fn listed(modules: &[(char, usize)]) -> String {
     modules.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// Modules in no language: `A, B(_, _)`.
+/// Lists modules in a notation without words: `A, B(_, _)`.
 fn signatures(modules: &[(char, usize)]) -> String {
     let one = |(symbol, numbers): &(char, usize)| match numbers {
         0 => symbol.to_string(),
@@ -321,7 +327,8 @@ fn signatures(modules: &[(char, usize)]) -> String {
 }
 
 impl LsystemError {
-    /// The same error where the rules start in line `first` of a longer text: its lines count from the start of that.
+    /// Returns the same error for rules that start in line `first` of a longer text: its lines count from the start of
+    /// that.
     #[must_use]
     pub fn from_line(mut self, first: usize) -> Self {
         if let Self::Syntax { line, .. } | Self::TooLarge { line, .. } | Self::NotFinite { line, .. } =
@@ -334,7 +341,7 @@ impl LsystemError {
     }
 }
 
-/// Finite and not absurdly far away.
+/// Whether a point is finite and not absurdly far away.
 pub(crate) fn usable(p: glam::DVec3) -> bool {
     p.is_finite() && p.abs().max_element() <= FAR_M
 }
@@ -348,6 +355,7 @@ base::coded!(GrowthError {
     Self::RootInObstacle { root, obstacle, name } => "root-in-obstacle" { root = root + 1, obstacle = obstacle + 1, name },
     Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault => GrowthError },
     Self::Nothing { why } => "nothing-grew" { why },
+    Self::Light { why } => "growth-light" { why },
     Self::Mesh(why) => "mesh" { why => SolidFault },
     Self::NoRoom { found, wanted, .. } => "no-room" { found, wanted },
 } wraps {

@@ -1,9 +1,9 @@
-//! Attraction points in a uniform grid, each with the joint that is nearest to it.
+//! Attraction points in a uniform grid, each with its nearest joint.
 //!
-//! Flat arrays sorted by cell. Every cell knows how far the nearest joint of its worst-served point is, so a new
-//! joint visits only cells in which it can be nearer to something: that, not the perception radius, sets the cost.
-//! Cells and points are sifted in f32, eight at a time and with room for its errors; what is left is tested in f64. So
-//! the sieve's precision never shows in a result.
+//! Flat arrays sorted by cell. Every cell stores the largest distance of its points from their joints, so a new joint
+//! visits only cells in which it can be nearer to some point: that, not the perception radius, determines the cost.
+//! Cells and points are filtered in f32, eight at a time and with a margin for its errors; the rest is tested in f64.
+//! So the precision of the filter never affects a result.
 
 use glam::{DVec3, DVec4, Vec4};
 
@@ -11,39 +11,39 @@ use crate::sieve::{BLOCK, Cells, EMPTY, LANES, Near, Probe, SIDE, Sieve, near_gr
 
 /// No joint.
 pub(crate) const NOBODY: u32 = u32::MAX;
-/// No place: the point is gone.
+/// No slot: the point is removed.
 const GONE: u32 = u32::MAX;
-/// Not moved in this round.
+/// Marks a point whose owner did not change in this round.
 const STILL: u32 = u32::MAX - 1;
-/// Points per cell aimed at: fewer cost more cells to visit, more cost more points to test.
+/// Target of points per cell: fewer cost more cells to visit, more cost more points to test.
 const PER_CELL: f64 = 6.0;
 
-/// What a round of offers did to one point.
+/// Effect of a round of offers on one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Change {
-    /// The joint that had it before; [`NOBODY`] if none.
+    /// The previous joint; [`NOBODY`] if none.
     pub(crate) from: u32,
-    /// The joint that has it now.
+    /// The new joint.
     pub(crate) to: u32,
-    /// The point.
+    /// Position of the point.
     pub(crate) place: DVec3,
-    /// The square of its distance to the joint that has it now.
+    /// The square of its distance to the new joint.
     pub(crate) d2: f64,
     /// Its index in the input.
     pub(crate) id: u32,
-    /// Unit vector from the joint that had it; zero if none.
+    /// Unit vector from the previous joint; zero if none.
     pub(crate) pull: DVec3,
-    /// It was near enough to be consumed, and is gone.
+    /// Whether it was near enough to be consumed, and is removed.
     pub(crate) killed: bool,
 }
 
-/// One point; side by side, because all of it is read together.
+/// One point; in one struct, because all of it is read together.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     place: DVec3,
-    /// Squared distance to the nearest joint so far; the squared perception radius while there is none.
+    /// Squared distance to the nearest joint so far; the squared perception radius if there is none.
     best2: f64,
-    /// Unit vector to it from the joint that had it when the last round was settled.
+    /// Unit vector to it from its joint when the last round was settled.
     pull: DVec3,
     owner: u32,
     /// The owner before this round, or [`STILL`].
@@ -59,22 +59,22 @@ pub(crate) struct Field {
     sieve: Vec<Sieve>,
     /// Slot of each point by input index, or [`GONE`].
     slot: Vec<u32>,
-    /// Slots of the points that changed hands in this round (`moves` of them, there is room for all and one more), and
+    /// Slots of the points that changed owners in this round (`moves` of them; capacity for all and one more), and
     /// input indices of those to be removed.
     moved: Vec<u32>,
     moves: usize,
     dead: Vec<u32>,
-    /// Workspaces of an offer: as long as there are cells and groups, and one more.
+    /// Workspaces of an offer: as many as cells and groups, and one more.
     near_cells: Vec<u32>,
     near_groups: Vec<Near>,
-    /// First slot of each cell and number of points left in it. The 64 cells of a block lie side by side.
+    /// First slot of each cell and number of its remaining points. The 64 cells of a block are adjacent.
     start: Vec<u32>,
     left: Vec<u32>,
-    /// Upper bound of `best2` in each cell, by block; 0 where it is empty.
+    /// Upper bound of `best2` in each cell, by block; 0 if it is empty.
     reach2: Vec<[f32; BLOCK]>,
     /// The same for each block.
     block_reach2: Vec<f32>,
-    /// Lower and upper ends of the cells of each block, by axis; the outermost reach to infinity.
+    /// Lower and upper ends of the cells of each block, by axis; the outermost extend to infinity.
     edges: [Vec<[Vec4; 2]>; 3],
     /// Squared gaps between a joint and the cells, by axis: a workspace.
     gaps: [Vec<Vec4>; 3],
@@ -89,8 +89,8 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// Puts usable points into cells; the others are gone from the start. `usable` has one entry for each point;
-    /// `perception_m` is above 0.
+    /// Sorts usable points into cells; the others count as removed from the start. `usable` has one entry for each
+    /// point; `perception_m` is above 0.
     pub(crate) fn new(points: &[DVec3], usable: &[bool], perception_m: f64) -> Self {
         let good: Vec<u32> = (0..index(points.len())).filter(|&i| usable[i as usize]).collect();
         let (lo, cell, blocks) = layout(points, &good, perception_m);
@@ -161,15 +161,15 @@ impl Field {
         lane.best2[k] = above(spot.best2);
     }
 
-    /// Points not yet consumed or given up.
+    /// Returns the number of points not yet consumed or given up.
     pub(crate) const fn alive(&self) -> usize {
         self.alive
     }
 
-    /// Lets every point within its present distance choose the new joint at `p`, where `sees` the point.
+    /// Lets every point that is nearer to the new joint at `p` than to its own choose it, if `sees` holds.
     ///
-    /// One level after another, each in a loop of its own that stores always and keeps what counts: which points
-    /// change hands is chance, so branches on it would be guessed wrongly.
+    /// One level after another, each in a loop of its own that always stores and keeps the relevant entries: which
+    /// points change owners is random, so branches on it would be mispredicted.
     #[inline]
     pub(crate) fn offer(&mut self, p: DVec3, joint: u32, sees: impl Fn(DVec3) -> bool) {
         let new = self.newcomer(p);
@@ -206,7 +206,7 @@ impl Field {
         self.lower(groups);
     }
 
-    /// Finds the cells in which the joint can be nearer to something, in their order; their number.
+    /// Finds the cells in which the joint can be nearer to some point, in their order; returns their number.
     #[inline]
     fn near_cells(&mut self, new: &Newcomer) -> usize {
         let (from, to) = (self.block_of(new.p - self.far), self.block_of(new.p + self.far));
@@ -242,7 +242,7 @@ impl Field {
         count
     }
 
-    /// Brings down the bounds of the cells and blocks of these groups.
+    /// Lowers the bounds of the cells and blocks of these groups.
     #[inline]
     fn lower(&mut self, groups: usize) {
         let mut last = NOBODY;
@@ -271,17 +271,17 @@ impl Field {
 
     fn newcomer(&self, p: DVec3) -> Newcomer {
         let at = p - self.lo;
-        // Coordinates in f32 are off by 2^-24 of their size, their difference by as much again: e on each axis. Of a
+        // Coordinates in f32 are off by 2^-24 of their size, their difference by as much again: e on each axis. For a
         // point at d that makes at most 2 sqrt(3) d e + 3 e^2.
         let e = (self.span + at.abs().max_element()) / 8_388_608.0;
         let slack = above(4.0 * self.far * e + 4.0 * e * e);
-        // The ends of cells are products, off by a little more.
+        // The ends of cells are products, with slightly larger errors.
         let blur = Vec4::splat(above(4.0 * e));
         Newcomer { p, probe: Probe { at: at.as_vec3().to_array(), slack }, blur }
     }
 
-    /// Ends a round of offers: tells of every point that changed hands, and removes those within the kill distance.
-    /// `changed` answers with the unit vector from the new joint to the point.
+    /// Ends a round of offers: reports every point that changed owners, and removes those within the kill distance.
+    /// `changed` returns the unit vector from the new joint to the point.
     pub(crate) fn settle(&mut self, kill2: f64, mut changed: impl FnMut(Change) -> DVec3) {
         let moves = core::mem::take(&mut self.moves);
         for &slot in &self.moved[..moves] {
@@ -303,7 +303,7 @@ impl Field {
         self.dead = dead;
     }
 
-    /// Takes the point of slot `a` out of its cell; the cell's last one takes its slot.
+    /// Removes the point of slot `a` from its cell; the cell's last one takes its slot.
     fn remove(&mut self, a: usize) {
         debug_assert!(self.moves == 0, "slots are fixed during a round");
         let cell = self.cell_index(self.spots[a].place);
@@ -322,7 +322,8 @@ impl Field {
         }
     }
 
-    /// Gives up the point with input index `id`; its joint, [`NOBODY`] if it had none, and the unit vector from there.
+    /// Gives up the point with input index `id`; returns its joint, [`NOBODY`] if it had none, and the unit vector from
+    /// there.
     pub(crate) fn give_up(&mut self, id: u32) -> Option<(u32, DVec3)> {
         let a = self.slot[id as usize];
         if a == GONE {
@@ -333,12 +334,12 @@ impl Field {
         Some((owner, pull))
     }
 
-    /// Narrows the search to what the worst-served point still needs. Call now and then.
+    /// Narrows the search to the largest distance that is still needed. Call occasionally.
     pub(crate) fn narrow(&mut self) {
         self.far = f64::from(self.block_reach2.iter().copied().fold(0.0, f32::max)).sqrt();
     }
 
-    /// Every point left: input index, place, owner, squared distance to it.
+    /// Iterates over the remaining points: input index, position, owner, squared distance to it.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, DVec3, u32, f64)> + '_ {
         (0..self.left.len()).flat_map(move |c| {
             let start = self.start[c] as usize;
@@ -348,7 +349,7 @@ impl Field {
         })
     }
 
-    /// Squared distance of point `id` to its joint; `None` if it is gone.
+    /// Returns the squared distance of point `id` to its joint; `None` if it is removed.
     pub(crate) fn distance2(&self, id: u32) -> Option<f64> {
         let a = self.slot[id as usize];
         (a != GONE).then(|| self.spots[a as usize].best2)
@@ -374,28 +375,28 @@ impl Field {
 struct Newcomer {
     p: DVec3,
     probe: Probe,
-    /// What a distance from the end of a cell may be too large by.
+    /// Bound of the error of a distance from the end of a cell.
     blur: Vec4,
 }
 
 impl Newcomer {
-    /// Squared distances along an axis, no more than they are, to cells between `low` and `high`.
+    /// Returns lower bounds of the squared distances along an axis to cells between `low` and `high`.
     #[inline]
     fn gap(&self, axis: usize, low: Vec4, high: Vec4) -> Vec4 {
         let at = Vec4::splat(self.probe.at[axis]);
         let gap = ((low - at).max(at - high) - self.blur).max(Vec4::ZERO);
-        // A millionth less covers what the square rounds.
+        // The factor covers the rounding of the square: a millionth less.
         gap * gap * Vec4::splat(0.999_999)
     }
 }
 
-/// A block by its rows.
+/// Iterates over the rows of a block.
 #[inline]
 fn rows(block: &[f32]) -> impl Iterator<Item = Vec4> + '_ {
     block.as_chunks::<SIDE>().0.iter().map(|row| Vec4::from_array(*row))
 }
 
-/// Lower and upper ends of `blocks` blocks of cells from 0 on.
+/// Returns the lower and upper ends of `blocks` blocks of cells from 0 on.
 fn edges(cell: f64, blocks: usize) -> Vec<[Vec4; 2]> {
     let last = blocks * SIDE;
     let at = |i: usize| DVec4::splat(cell) * (DVec4::new(0.0, 1.0, 2.0, 3.0) + i as f64);
@@ -410,7 +411,7 @@ fn edges(cell: f64, blocks: usize) -> Vec<[Vec4; 2]> {
     edges
 }
 
-/// At least `x`, which is 0 or more: a millionth covers what f32 rounds, in sums of three, too.
+/// Rounds `x`, which is 0 or more, up: a millionth covers the rounding of f32, in sums of three, too.
 #[expect(clippy::cast_possible_truncation, reason = "rounded up after")]
 #[inline]
 fn above(x: f64) -> f32 {
@@ -427,7 +428,7 @@ fn clamp_to(x: f64, n: usize) -> usize {
     if x > 0.0 { (x as usize).min(n - 1) } else { 0 }
 }
 
-/// Lower corner, cell size and numbers of blocks. Laid over the bulk of the points: a far outlier falls into an
+/// Returns lower corner, cell size and numbers of blocks. Laid over the bulk of the points: a far outlier falls into an
 /// outermost cell and must not make all cells large.
 fn layout(points: &[DVec3], good: &[u32], perception_m: f64) -> (DVec3, f64, [usize; 3]) {
     if good.is_empty() {
@@ -438,7 +439,7 @@ fn layout(points: &[DVec3], good: &[u32], perception_m: f64) -> (DVec3, f64, [us
         lo = lo.min(points[i as usize]);
         hi = hi.max(points[i as usize]);
     }
-    // A thousand points tell where the bulk is.
+    // A thousand points show where the bulk is.
     let every = good.len() / 1000 + 1;
     for axis in 0..3 {
         let mut sample: Vec<f64> = good.iter().step_by(every).map(|&i| points[i as usize][axis]).collect();

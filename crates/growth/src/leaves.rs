@@ -1,4 +1,4 @@
-//! Leaves on the thin shoots, where light reaches.
+//! Leaves on thin shoots, where light reaches them.
 //!
 //! `Plant + FoliageSpec -> candidates by phyllotaxis -> shadows -> the brightest` (Yang et al. 2019, section 3.3)
 
@@ -15,16 +15,16 @@ use crate::{Arrangement, GrowthError, LeafMark, Obstacles};
 /// Axes whose leaves are placed in one job.
 const GROUP: usize = 64;
 
-/// What leaves a tree bears.
+/// Settings of the leaves of a tree.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FoliageSpec {
-    /// How they stand around the shoot, default a golden spiral.
+    /// Arrangement around the shoot, default a golden spiral.
     pub arrangement: Arrangement,
-    /// Between two nodes of a shoot, metres, above 0, default 0.06.
+    /// Distance between two nodes of a shoot, metres, above 0, default 0.06.
     #[schemars(range(min = 0.0001, max = 1000.0), extend("x-unit" = "m"))]
     pub spacing_m: f64,
-    /// How far leaves are gathered towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip
+    /// Concentration of leaves towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip
     /// are `1 - gather` times as far from each other as [`spacing_m`](Self::spacing_m), those at its foot `1 + gather`
     /// times.
     #[schemars(range(min = 0.0, max = 0.95))]
@@ -38,25 +38,26 @@ pub struct FoliageSpec {
     /// Standard deviation of the length as a share of it, 0 to 0.5, default 0.1.
     #[schemars(range(min = 0.0, max = 0.5))]
     pub size_variation: f64,
-    /// Between shoot and blade, degrees, 0 to 180, default 55.
+    /// Angle between shoot and blade, degrees, 0 to 180, default 55.
     #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
     pub angle_deg: f64,
-    /// How far blades hang, -1 to 1 (all down), default 0.15.
+    /// Droop of the blades, -1 to 1 (all down), default 0.15.
     #[schemars(range(min = -1.0, max = 1.0))]
     pub droop: f64,
-    /// Shoots bear leaves where they are not thicker than this, metres; default 0.009: two of the usual tips.
+    /// Largest radius of shoots that bear leaves, metres; default 0.009: two of the usual tips.
     #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
     pub max_radius_m: f64,
-    /// Share of the leaves kept, the best lit ones, 0 to 1; default 1. Many, suitable and few in Fig 11 of Yang et al. (2019).
+    /// Share of the leaves kept, the best lit ones, 0 to 1; default 1. Many, suitable and few in Fig 11 of Yang et al.
+    /// (2019).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_keep: f64,
-    /// Leaves with less light fall in any case, 0 or more (full light is 1), default 0.
+    /// Light below which leaves fall in any case, 0 or more (full light is 1), default 0.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub min_light: f64,
-    /// What a leaf adds to the shadow of its own voxel (k of Eq 5), above 0, default 0.03.
+    /// Contribution of a leaf to the shadow of its own voxel (k of Eq 5), above 0, default 0.03.
     #[schemars(range(min = 1e-6, max = 100.0))]
     pub shade: f64,
-    /// The fall of the shadow from layer to layer (b of Eq 5), above 1, default 1.8.
+    /// Factor by which the shadow decreases from layer to layer (b of Eq 5), above 1, default 1.8.
     #[schemars(range(min = 1.0, max = 100.0))]
     pub shade_fall: f64,
     /// Layers below a leaf that it shades, 1 to 32, default 6.
@@ -65,7 +66,7 @@ pub struct FoliageSpec {
     /// Side of a voxel, metres; default two blade lengths.
     #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "m"))]
     pub voxel_m: Option<f64>,
-    /// Whether a leaf suffers from its own shadow, as in the paper (Palubicki adds it back). Default false.
+    /// Whether a leaf is shaded by its own shadow, as in the paper (Palubicki adds it back). Default false.
     pub self_shadow: bool,
     /// Most leaves that are considered, default 2 million.
     pub max_leaves: u32,
@@ -98,7 +99,7 @@ impl Default for FoliageSpec {
 }
 
 impl FoliageSpec {
-    /// A plain blade of length 1: broadest in the middle, a little folded and bent.
+    /// Returns a plain blade of length 1: broadest in the middle, slightly folded and bent.
     pub fn blade(&self) -> Blade {
         let half = 0.5 * if self.width.is_finite() { self.width.clamp(0.01, 3.0) } else { 0.5 };
         let right: Vec<DVec2> = (1..8)
@@ -122,24 +123,24 @@ impl FoliageSpec {
     }
 }
 
-/// How many leaves there are and were.
+/// Counts of present and removed leaves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeafCount {
     /// Places for leaves by phyllotaxis.
     pub placed: usize,
-    /// Of these, in an obstacle and left out.
+    /// Places among these in an obstacle, which are left out.
     pub buried: usize,
-    /// Fallen for want of light, or not there in this season.
+    /// Leaves that fell for lack of light, or are absent in this season.
     pub fallen: usize,
-    /// On the plant.
+    /// Leaves on the plant.
     pub kept: usize,
 }
 
-/// A leaf that might be.
+/// A possible leaf.
 struct Candidate {
     bearer: NodeId,
     at: DVec3,
-    /// Unit vector from root to tip, before it is made a frame; where the upper side looks.
+    /// Direction from root to tip, before it is made a frame; direction of the upper side.
     along: DVec3,
     towards: DVec3,
     scale: f64,
@@ -147,7 +148,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// As [`Frame::looking`] has it: most candidates fall before they need the rest of the frame.
+    /// As in [`Frame::looking`]: most candidates fall before they need the rest of the frame.
     fn tip(&self, share: f64, length: f64) -> DVec3 {
         self.at + self.along.try_normalize().unwrap_or(DVec3::Y) * (share * self.scale * length)
     }
@@ -157,10 +158,10 @@ impl Candidate {
     }
 }
 
-/// Sets leaves on the thin shoots of a plant, or at `marks` if there are any, and lets the shaded ones fall.
+/// Adds leaves to the thin shoots of a plant, or at `marks` if there are any, and removes the shaded ones.
 ///
-/// `blade`: any blade; it is scaled to the length asked for. Guaranteed: a clean `validate()`; no corner of a
-/// leaf in an obstacle; of the same tree, a smaller `leaf_keep` keeps a part of what a larger one keeps. Cost:
+/// `blade`: any blade; it is scaled to the length of the spec. Guaranteed: a clean `validate()`; no corner of a leaf in
+/// an obstacle; for the same tree, a smaller `leaf_keep` keeps a part of the leaves that a larger one keeps. Cost:
 /// linear in places for leaves, times the square of `shade_layers`.
 ///
 /// # Errors
@@ -193,7 +194,7 @@ pub fn add_leaves(
     let phyllotaxis = spec.check()?;
     let started = run.clock.now_ms();
     let mut all = Vec::new();
-    // Everything is measured along the blade that was given.
+    // All measures are along the given blade.
     let length = blade.length();
     let scale = if length > 1e-9 && length.is_finite() { spec.length_m / length } else { spec.length_m };
     if marks.is_empty() {
@@ -251,7 +252,7 @@ pub fn add_leaves(
     Ok(LeafCount { placed, buried, fallen: all.len() - kept, kept })
 }
 
-/// Places on all axes, in their order; those of several axes are found at a time.
+/// Returns the places on all axes, in their order; several axes are processed at a time.
 fn on_shoots(
     plant: &Plant,
     spec: &FoliageSpec,
@@ -277,7 +278,7 @@ fn on_shoots(
     )?;
     let mut all = Vec::with_capacity(places);
     let mut from = 0;
-    // Seldom more than one round: each takes so many axes as have room for all leaves that may be.
+    // Seldom more than one round: each takes as many axes as have room for the largest number of leaves.
     while from < rooms.len() && all.len() < most {
         let mut taken = 0;
         let fit = rooms[from..].iter().take_while(|&&n| {
@@ -303,7 +304,7 @@ fn on_shoots(
     Ok(all)
 }
 
-/// Length of an axis that is thin enough for leaves, or a little more.
+/// Returns the length of an axis that is thin enough for leaves, or slightly more.
 fn leafy(plant: &Plant, id: AxisId, spec: &FoliageSpec) -> f64 {
     let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
     let pieces = points.windows(2).zip(radii.windows(2));
@@ -311,7 +312,7 @@ fn leafy(plant: &Plant, id: AxisId, spec: &FoliageSpec) -> f64 {
     thin.map(|(p, _)| p[0].distance(p[1])).sum()
 }
 
-/// No less than the places on an axis.
+/// Returns an upper bound of the number of places on an axis.
 fn room(plant: &Plant, id: AxisId, spec: &FoliageSpec, phyllotaxis: Phyllotaxis) -> usize {
     let g = spec.gather;
     let more = if g > 0.0 { ops::ln((1.0 + g) / (1.0 - g)) / (2.0 * g) } else { 1.0 };
@@ -321,7 +322,7 @@ fn room(plant: &Plant, id: AxisId, spec: &FoliageSpec, phyllotaxis: Phyllotaxis)
     room
 }
 
-/// How far it is from a node to the next one down the shoot.
+/// Distance from a node to the next one down the shoot.
 ///
 /// `d(k)`, the node's distance from the tip, solves `dd/dk = spacing (1 - gather + 2 gather d / length)`.
 struct Internodes {
@@ -336,7 +337,7 @@ impl Internodes {
         }
         let twice = 2.0 * spec.gather;
         let growth = ops::exp(twice * spec.spacing_m / length) - 1.0;
-        // A shoot shorter than an internode has one node, wherever the next would be.
+        // A shoot shorter than an internode has one node, whatever the distance to the next.
         let growth = growth.min(1e6);
         Self { growth, first: growth * length * (1.0 - spec.gather) / twice }
     }
@@ -346,7 +347,7 @@ impl Internodes {
     }
 }
 
-/// Places on the thin part of one axis, from its tip down, so that the tip always has its leaf.
+/// Returns the places on the thin part of one axis, from its tip down, so that the tip always has its leaf.
 fn on_axis(
     plant: &Plant,
     id: AxisId,
@@ -403,18 +404,18 @@ fn leaf(
     bearer: NodeId,
 ) -> Candidate {
     let mut stream = key.stream(Draw::LeafAngle);
-    // 8 degrees: leaves of one shoot differ, but its phyllotaxis is still seen.
+    // 8 degrees: leaves of one shoot differ, but its phyllotaxis is still visible.
     let angle = (spec.angle_deg + 8.0 * stream.normal()) * (PI / 180.0);
     let (s, c) = ops::sin_cos(angle);
     let stands = shoot * c + out * s;
     let along = (stands * (1.0 - spec.droop.abs()) - DVec3::Y * spec.droop).normalize_or(stands);
     let size = 1.0 + spec.size_variation * key.stream(Draw::Size).normal().clamp(-2.5, 2.5);
-    // The upper side looks to the light; a blade that hangs straight down turns it outwards.
+    // The upper side faces the light; a blade that hangs straight down turns it outwards.
     let towards = DVec3::Y + out * 0.3;
     Candidate { bearer, at, along, towards, scale: scale * size.max(0.1), key: key.number() }
 }
 
-/// Eq 6: Q = max(C - s, 0) with C = 1, and the leaf's own shadow added back unless the spec says otherwise.
+/// Computes Eq 6: Q = max(C - s, 0) with C = 1, and the leaf's own shadow added back unless the spec says otherwise.
 fn light_of(all: &[Candidate], length: f64, spec: &FoliageSpec) -> Vec<f64> {
     let middles: Vec<DVec3> = all.iter().map(|c| c.tip(0.5, length)).collect();
     let all_round = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -422,7 +423,7 @@ fn light_of(all: &[Candidate], length: f64, spec: &FoliageSpec) -> Vec<f64> {
     if all.is_empty() {
         return Vec::new();
     }
-    // A voxel much smaller than the tree over 200 makes a grid that no memory holds.
+    // A voxel much smaller than 1/200 of the tree makes a grid that no memory holds.
     let least = (hi - lo).max_element() / 200.0;
     let voxel = spec.voxel_m.unwrap_or(2.0 * spec.length_m).max(least);
     let mut grid = ShadowGrid::new(voxel, spec.shade, spec.shade_fall, spec.shade_layers);
@@ -431,11 +432,11 @@ fn light_of(all: &[Candidate], length: f64, spec: &FoliageSpec) -> Vec<f64> {
     grid.add_all(voxels.iter().copied(), 1);
     grid.spread();
     let own = if spec.self_shadow { 0.0 } else { grid.own() };
-    // Not cut off at 0: in deep shade, too, one leaf has more light than another.
+    // Not clamped to 0: in deep shade, too, one leaf has more light than another.
     voxels.iter().map(|&v| 1.0 - grid.shade(v) + own).collect()
 }
 
-/// Which leaves stay: enough light, and among the brightest; keys decide between equals.
+/// Returns for each leaf whether it stays: enough light, and among the brightest; keys decide between equals.
 fn brightest(all: &[Candidate], light: &[f64], spec: &FoliageSpec) -> Vec<bool> {
     let mut keeps = vec![false; all.len()];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]

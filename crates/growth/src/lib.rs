@@ -6,25 +6,25 @@
 //! |---|---|
 //! | `envelope` | the space of a crown, attraction points scattered in it |
 //! | `limbs` | crowns of limbs and masses of foliage, drawn anew by each seed |
-//! | `variation` | how trees of one kind differ |
-//! | `life` | a tree as it was when it was younger |
+//! | `variation` | variation between trees of one kind |
+//! | `life` | a tree at a younger age |
 //! | `obstacle` | boxes, balls, cylinders, planes and meshes that growth goes around |
-//! | `beside` | courses of wood beside obstacles: room for bark |
+//! | `beside` | courses of wood next to obstacles: room for bark |
 //! | `mesh_faults` | whether a mesh is closed, for warnings |
 //! | `colonize` | space colonisation (Runions 2007) |
 //! | `competition` | life cycles of attraction points (Yang et al. 2019) |
 //! | `self_organize` | buds that compete for light, shedding, wood (Palubicki 2009) |
 //! | `guided` | buds with markers of their own, repulsion, strokes of a brush (the VR paper) |
 //! | `lsystem` | rules read from text |
-//! | `skeleton` | what growers make: joints and the joints they grew from |
+//! | `skeleton` | the result of growers: joints and their parents |
 //! | `wood` | axes, smooth courses, radii |
 //! | `props` | roots that arch from the stem to the ground |
 //! | `scars` | stubs, knots, burls, hollows and broken limbs on stems |
 //! | `surface_roots` | roots that run along the ground from the foot of a stem |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
-//! | `species` | measured trees → rules whose trees branch as they do, and how well they agree |
-//! | `spec`, `look` | [`TreeSpec`]: everything that can be asked of a tree, and what it looks like |
-//! | `tree` | the whole way: [`grow`] |
+//! | `species` | rules fitted to measured trees so that they branch alike, and the agreement of both |
+//! | `spec`, `look` | [`TreeSpec`]: all settings of a tree, and its appearance |
+//! | `tree` | the whole process: [`grow`] |
 
 mod arrangement;
 mod beside;
@@ -83,6 +83,6 @@ pub use tropism::Tropism;
 pub use variation::VariationSpec;
 pub use wood::{PropSpec, ScarSpec, SurfaceRootSpec, Wood, WoodSpec, make_wood};
 
-/// The share of the work that is done, for people who wait, when the skeleton stands; the rest is wood, leaves and
-/// meshes. As of an oak.
+/// Share of the work that is done, for people who wait, when the skeleton is complete; the rest is wood, leaves and
+/// meshes. Measured on an oak.
 pub(crate) const GROWN: f64 = 0.4;

@@ -1,17 +1,17 @@
-//! A tree as it was when it was younger.
+//! A tree at a younger age.
 //!
 //! `Skeleton of the whole tree + share of its life -> Skeleton, thinner and shorter, with the same branches`
 //!
-//! The leader, the way to the highest joint, rises by the law of Chapman and Richards. A branch has reached the share of its
-//! length that its bearer has reached of what it has beyond that branch, so that a crown is a cone below its tip, in leaf
-//! nearly from its foot on, at each age. Limbs that reach far aside wait for the leader to get ahead of them and catch up
-//! later (apical control: Wilson, American Journal of Botany 87, 2000), and twigs are whole after few
-//! years.
+//! The leader, the path to the highest joint, rises by the law of Chapman and Richards. The share of its length that a
+//! branch has reached equals the share that its bearer has reached of its part beyond that branch, so that a crown is a
+//! cone below its tip, in leaf nearly from its foot on, at each age. Limbs that reach far aside wait for the leader to
+//! get ahead of them and catch up later (apical control: Wilson, American Journal of Botany 87, 2000), and twigs are
+//! complete after few years.
 //!
-//! Joints of large axes come early and move apart; those of twigs come one by one. So a leader has most of its limbs early:
-//! in a wood the lowest die while new ones grow at the top, which looks the same at each age, though there they are not the
-//! same ones. Stretches that bear nothing in the whole tree, the bole and the inner halves of limbs, lengthen
-//! with their axis.
+//! Joints of large axes appear early and move apart; those of twigs appear one by one. So a leader has most of its
+//! limbs early: in a wood the lowest die while new ones grow at the top, which looks the same at each age, although
+//! there they are not the same ones. Stretches that bear nothing in the whole tree, the bole and the inner halves of
+//! limbs, lengthen with their axis.
 
 use base::ops;
 use glam::DVec3;
@@ -21,64 +21,66 @@ use crate::{JointId, Skeleton, WoodSpec};
 
 /// Shape of growth (Richards 1959).
 const SHAPE: f64 = 1.35;
-/// Rate of growth per year: trees in the open have a third of the height that they have at forty years after ten, and
-/// two thirds after twenty. Of short lives and very long ones, the rate is of a whole life.
+/// Rate of growth per year: trees in the open have a third of the height at forty years after ten, and two thirds after
+/// twenty.
 const RATE_A_YEAR: f64 = 0.05;
+/// Least and greatest rate over a whole life, for very short and very long lives.
 const RATE: [f64; 2] = [1.6, 6.0];
-/// How far a leader is above a limb under full apical control, over how far that limb reaches aside. Crowns of young trees
-/// are about half as wide as they are high; those of trees whose limbs reach further aside than half of their height, as
-/// umbrella thorns, are wider early, too.
+/// Height of a leader above a limb under full apical control, relative to how far that limb reaches aside.
 const CONTROL: f64 = 4.0;
+/// Ratio of the reach of limbs to the height above which trees, such as umbrella thorns, are wider early, too. Crowns
+/// of young trees are about half as wide as they are high.
 const WIDE: f64 = 0.5;
-/// Crowns that are narrower over their height than this are columns from the start: limbs on the leader have at most so many times
-/// the share of their length that it has of its own.
+/// Ratio of width to height below which crowns are columns from the start.
 const SLENDER: f64 = 0.09;
+/// Largest share of their length that limbs on the leader of such a column have, relative to that of the leader.
 const COLUMN: f64 = 1.2;
-/// How far the bearer of the shortest twig is beyond it when it is whole, over its length.
+/// Distance of the bearer's tip beyond the shortest twig at which the twig is complete, relative to the twig's length.
 const WHOLE_AT: f64 = 1.2;
-/// How much a leader grows by the lengthening of all of its internodes rather than by new ones at its tip, 0 to 1; shorter
-/// axes by as much less as they are shorter, and twigs hardly. With 1, a young tree is the whole one made small, and as
-/// dense in twigs as a thicket; with 0 it is the foot of the whole one, with as many limbs as that has there.
+/// Share of a leader's growth that lengthens all of its internodes rather than adding new ones at its tip, 0 to 1;
+/// smaller for shorter axes, and nearly 0 for twigs. With 1, a young tree is the whole one scaled down, and as dense in
+/// twigs as a thicket; with 0 it is the foot of the whole one, with as many limbs as that has there.
 const SIMILAR: f64 = 0.8;
-/// The share of an axis that may bear nothing before the stretch counts as bare.
+/// Share of an axis without branches above which the stretch counts as bare.
 const GAP: f64 = 0.08;
-/// The share of an axis's pipes that counts as a branch of it.
+/// Least share of an axis's pipes that counts as a branch of it.
 const COUNTS: f64 = 0.01;
-/// The least share of an internode that is drawn at the tip of a growing shoot.
+/// Least share of an internode that is drawn at the tip of a growing shoot.
 const BEGUN: f64 = 0.12;
-/// As many branches at one joint are the fronds of a palm or a tree fern, if a stem of this share of the height bears them.
+/// Least number of branches at one joint that are the fronds of a palm or a tree fern.
 const FRONDS: usize = 8;
+/// Least length of the stem that bears such fronds, as a share of the height.
 const ON_A_STEM: f64 = 0.25;
-/// Fronds of a young palm are this power of the stem's share as long as those of the whole one: they come before the stem.
+/// Exponent of the stem's share that gives the length of the fronds of a young palm: they come before the stem.
 const FRONDS_FIRST: f64 = 0.4;
-/// Stems thicken by this power of the height at least, so that no young tree is stouter than the whole one (elastic similarity:
-/// `McMahon`, Science 179, 1973).
+/// Least exponent of the height by which stems thicken, so that no young tree is stouter than the whole one (elastic
+/// similarity: `McMahon`, Science 179, 1973).
 const ELASTIC: f64 = 1.5;
-/// Twigs of the youngest are no thinner than this share of those of the whole tree.
+/// Least ratio of the radius of twigs of the youngest tree to that of the whole tree.
 const SLIMMEST: f64 = 0.16;
 
-/// The share of the final length at a share of a life of so many years.
+/// Returns the share of the final length at a share of a life of `years` years.
 pub(crate) fn grown_by(life: f64, years: u32) -> f64 {
     let rate = (RATE_A_YEAR * f64::from(years)).clamp(RATE[0], RATE[1]);
     let all = 1.0 - ops::exp(-rate);
     ops::powf((1.0 - ops::exp(-rate * life.clamp(0.0, 1.0))) / all, SHAPE)
 }
 
-/// The skeleton at a share of its life, above 0 and below 1, and where each of its joints is then.
+/// Returns the skeleton at a share of its life, above 0 and below 1, and the index in it of each of its joints.
 ///
-/// Nested: what is there at one share is there at each later one. Radii that the skeleton brings along become thinner by
-/// the pipes that are not there yet. Cost: linear.
+/// Nested: a part that exists at one share exists at each later one. Given radii of the skeleton become thinner by the
+/// pipes that do not exist yet. Cost: linear.
 pub(crate) fn younger(
     full: &Skeleton,
     wood: &WoodSpec,
     life: f64,
     years: u32,
 ) -> (Skeleton, Vec<Option<JointId>>) {
-    let axes = Axes::of(full, wood);
+    let axes = Axes::find(full, wood);
     let n = full.len();
     let leader = grown_by(life, years);
-    // Of each joint's axis, the shares of its length and of its joints that are there; of each joint, the share of its own
-    // internode, and where it is.
+    // For each joint's axis, the present shares of its length and of its joints; for each joint, the share of its own
+    // internode, and its position.
     let (mut grown, mut own, mut place) = (vec![leader; n], vec![1.0; n], full.position.clone());
     let mut opened: Vec<f64> =
         (0..n).map(|j| if full.parent[j].is_none() { axes.open(j, leader) } else { 0.0 }).collect();
@@ -114,7 +116,7 @@ pub(crate) fn younger(
     (young, ids)
 }
 
-/// The joints that bear the fronds of a palm or a tree fern.
+/// Returns for each joint whether it bears the fronds of a palm or a tree fern.
 fn rosettes(full: &Skeleton) -> Vec<bool> {
     let mut children = vec![0_usize; full.len()];
     full.parent.iter().flatten().for_each(|p| children[p.index()] += 1);
@@ -125,12 +127,12 @@ fn rosettes(full: &Skeleton) -> Vec<bool> {
     let branches = |of: &dyn Fn(usize) -> bool| -> usize {
         children.iter().enumerate().filter(|(j, _)| of(*j)).map(|(_, n)| n.saturating_sub(1)).sum()
     };
-    // Twigs of a close column may meet in one joint, too, and are few of all.
+    // Twigs of a dense column may meet in one joint, too, but are few of all.
     if 2 * branches(&|j| rosette[j]) >= branches(&|_| true) { rosette } else { vec![false; full.len()] }
 }
 
-/// By how much leaves of this length, which are a part of the tree's own height, are shorter at a share of its life. On a stem of
-/// its own that bears nothing else, as a banana's, they come before the stem as fronds do.
+/// Returns the factor on the length of leaves, which are a part of the tree's own height, at a share of its life. On a
+/// stem that bears nothing else, as in a banana, they come before the stem as fronds do.
 pub(crate) fn fronds_by(full: &Skeleton, leaf_m: f64, life: f64, years: u32) -> f64 {
     let grown = grown_by(life, years);
     let mut borne = vec![0_usize; full.len()];
@@ -139,8 +141,8 @@ pub(crate) fn fronds_by(full: &Skeleton, leaf_m: f64, life: f64, years: u32) -> 
     if one_stem || rosettes(full).contains(&true) { ops::powf(grown, FRONDS_FIRST) } else { grown }
 }
 
-/// By how much all wood of each tree is thinner than the pipes of a young one ask for, which has the foot of most of its limbs:
-/// 1 or less. Stems of palms and ferns have their thickness before their height: nothing of those.
+/// Returns the factor, 1 or less, on the thickness of each young tree relative to its pipes, as it has the foot of most
+/// of its limbs. Stems of palms and ferns have their thickness before their height: they are not thinned.
 pub(crate) fn slimmer(full: &Skeleton, young: &Skeleton, wood: &WoodSpec) -> Vec<f64> {
     if rosettes(full).contains(&true) {
         return Vec::new();
@@ -165,21 +167,22 @@ pub(crate) fn slimmer(full: &Skeleton, young: &Skeleton, wood: &WoodSpec) -> Vec
     measured(full).into_iter().zip(measured(young)).map(slim).collect()
 }
 
-/// The axes of a whole tree: which joints make each, and how they grow.
+/// The axes of a whole tree: their joints and their growth.
 struct Axes {
-    /// Which joints bear fronds.
+    /// Whether each joint bears fronds.
     rosette: Vec<bool>,
     /// The first joint of each joint's axis, roots for trunks.
     head: Vec<usize>,
-    /// By joint, metres along its axis from where that leaves its bearer.
+    /// For each joint, the distance along its axis from its start on the bearer, metres.
     along: Vec<f64>,
-    /// Of `along`, what is not bare.
+    /// The part of `along` that is not bare.
     shot: Vec<f64>,
-    /// By head: length of the axis, what of it is not bare, and how far aside it ends, metres.
+    /// By head: length of the axis, the part of it that is not bare, and how far aside it ends, metres.
     whole: Vec<f64>,
     all_shot: Vec<f64>,
     aside: Vec<f64>,
-    /// By tree: the length of its leader, and of the longest branch that leaves it, and how far aside any of these ends.
+    /// By tree: the length of its leader, and of the longest branch that leaves it, and how far aside any of these
+    /// ends.
     leader: Vec<f64>,
     limb: Vec<f64>,
     reach: Vec<f64>,
@@ -187,7 +190,7 @@ struct Axes {
 }
 
 impl Axes {
-    fn of(full: &Skeleton, wood: &WoodSpec) -> Self {
+    fn find(full: &Skeleton, wood: &WoodSpec) -> Self {
         let n = full.len();
         let mut main = main_children(full, &radii(full, wood));
         lead_to_the_top(full, &mut main);
@@ -249,7 +252,7 @@ impl Axes {
         axes
     }
 
-    /// Lengths.
+    /// Measures lengths.
     fn measure(&mut self, full: &Skeleton) {
         for j in 0..full.len() {
             let Some(p) = full.parent[j].map(JointId::index) else { continue };
@@ -274,26 +277,26 @@ impl Axes {
         full.parent[j].map_or(0.0, |p| full.position[p.index()].distance(full.position[j]))
     }
 
-    /// What of the axis of `j` is not bare up to its parent `p`.
+    /// Returns the part of the axis of `j` that is not bare up to its parent `p`.
     fn shot_before(&self, j: usize, p: usize) -> f64 {
         if self.head[j] == self.head[p] { self.shot[p] } else { 0.0 }
     }
 
-    /// The share of its joints that the axis which begins with joint `h` has, when it has a share of its length.
+    /// Returns the present share of joints of the axis which begins with joint `h`, at a share of its length.
     fn open(&self, h: usize, grown: f64) -> f64 {
         let size = (self.whole[h] / self.leader[self.tree[h] as usize]).min(1.0);
         ops::powf(grown, 1.0 - SIMILAR * size)
     }
 
-    /// The share that the branch which begins with joint `h`, on joint `p` of its bearer, has of its length, when the bearer
-    /// has `bearer` of its own, and `begun` of its joints.
+    /// Returns the present share of length of the branch which begins with joint `h`, on joint `p` of its bearer, when
+    /// the bearer has `bearer` of its own, and `begun` of its joints.
     fn branch(&self, h: usize, p: usize, bearer: f64, begun: f64) -> f64 {
         let b = self.head[p];
         let beyond = self.whole[b] - self.along[p];
         if beyond <= 1e-9 {
             return bearer;
         }
-        // Where the branch stands on its bearer now, and how far the tip of that is beyond it.
+        // The current position of the branch on its bearer, and the distance of the bearer's tip beyond it.
         let foot = bearer * (self.along[p] - self.shot[p])
             + self.shot[p].min(begun * self.all_shot[b]) * bearer / begun.max(1e-12);
         let now = (bearer * self.whole[b] - foot).max(0.0);
@@ -306,14 +309,14 @@ impl Axes {
         let control = 1.0 + (full - 1.0) * (self.whole[b] / self.leader[t]).min(1.0);
         let free = (needed / (control * self.aside[h]).max(1e-12)).min(1.0);
         let share = (now / needed).min(1.0);
-        // Limbs that waited make up for it by the third power.
+        // Limbs that waited catch up by the third power.
         let reached = share * (free + (1.0 - free) * share * share);
         let leads = self.whole[b] >= self.leader[t];
         if leads { reached.min(COLUMN * bearer * (broad / SLENDER).max(1.0)) } else { reached }
     }
 }
 
-/// Makes the way to the highest joint of each tree its leader.
+/// Makes the path to the highest joint of each tree its leader.
 fn lead_to_the_top(full: &Skeleton, main: &mut [Option<JointId>]) {
     let trees = full.tree.iter().max().map_or(0, |t| *t as usize + 1);
     let mut top: Vec<Option<usize>> = vec![None; trees];
@@ -331,7 +334,7 @@ fn lead_to_the_top(full: &Skeleton, main: &mut [Option<JointId>]) {
     }
 }
 
-/// Radii of their own become those of the pipes that are there.
+/// Reduces given radii to those of the present pipes.
 fn thinner(full: &Skeleton, young: &mut Skeleton, ids: &[Option<JointId>], wood: &WoodSpec) {
     if full.radius_m.iter().all(|r| *r <= 0.0) {
         return;
@@ -339,8 +342,8 @@ fn thinner(full: &Skeleton, young: &mut Skeleton, ids: &[Option<JointId>], wood:
     let (all, now) = (pipes(full, wood.internode_share), pipes(young, wood.internode_share));
     for (j, id) in ids.iter().enumerate() {
         if let Some(id) = id {
-            // A tip is as thin as any, and the foot of the whole as thick as it is; between them, by its share of pipes,
-            // and soon: free-standing oaks of ten years are 5 to 12 cm thick at breast height.
+            // A tip is as thin as any, and the foot of the whole tree keeps its thickness; between them, by its share
+            // of pipes, and quickly: free-standing oaks of ten years are 5 to 12 cm thick at breast height.
             let (all, now) = (all[j].max(1.0), now[id.index()].max(1.0));
             let by_pipes = |pipes: f64| wood.tip_radius_m * ops::powf(pipes, 1.0 / wood.pipe_exponent);
             let stout = full.radius_m[j].max(1e-9) / by_pipes(all);
@@ -390,7 +393,7 @@ mod tests {
         }
         assert_eq!(last.0, full.len());
         assert!((last.1 - top(&full)).abs() < 1e-9);
-        // A third of its life makes about two fifths of its height, with limbs of its own.
+        // A third of its life gives about two fifths of its height, with limbs of its own.
         let (young, _) = younger(&full, &wood, 0.33, 40);
         assert!((0.33..0.6).contains(&(top(&young) / top(&full))) && young.len() > 30, "{}", young.len());
     }
@@ -434,7 +437,7 @@ mod tests {
             }
             last = now;
         }
-        // The end of the way is the whole tree.
+        // The limit is the whole tree.
         let (nearly, ids) = younger(&full, &wood, 1.0 - 1e-9, 40);
         for (j, id) in ids.iter().enumerate() {
             let off = id.map_or(0.0, |id| nearly.position[id.index()].distance(full.position[j]));

@@ -1,6 +1,6 @@
-//! Crowns of limbs and masses of foliage, drawn anew by each seed.
+//! Crowns of limbs and masses of foliage, drawn anew for each seed.
 //!
-//! `LimbsSpec + Habit -> courses of trunk and limbs, middles of masses`
+//! `LimbsSpec + Habit -> courses of trunk and limbs, centres of masses`
 
 use base::ops::{self, PI};
 use base::{Draw, Stream, turn};
@@ -10,34 +10,35 @@ use serde::{Deserialize, Serialize};
 
 use crate::variation::Habit;
 
-/// A crown of limbs that bear masses of foliage, with sky between them. How many limbs there are comes from here, where
-/// they stand from the seed. Metres, +Y up, relative to the root.
+/// A crown of limbs that bear masses of foliage, with sky between them. The spec sets the number of limbs, the seed
+/// their positions. Metres, +Y up, relative to the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimbsSpec {
     /// Height above the root at which the profile starts, 0 to 1e6.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
     pub base_m: f64,
-    /// What the crown fills: `(radius, height)`, at least 2 points, heights rising, radii 0 or more.
+    /// Profile that the crown fills: `(radius, height)`, at least 2 points, heights rising, radii 0 or more.
     #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
     pub profile: Vec<DVec2>,
-    /// Limbs of a tree, 1 to 400; [`variation.limbs`](crate::VariationSpec::limbs) says how far trees differ.
+    /// Limbs of a tree, 1 to 400; [`variation.limbs`](crate::VariationSpec::limbs) sets how much trees differ.
     #[schemars(range(min = 1, max = 400))]
     pub limbs: u32,
-    /// How steeply limbs leave the trunk at the foot of the crown and at its top, degrees above the horizontal, -60
-    /// to 85, default 20 and 60.
+    /// Angle of limbs at the trunk at the foot of the crown and at its top, degrees above the horizontal, -60 to 85,
+    /// default 20 and 60.
     #[serde(default = "rise")]
     #[schemars(with = "[f64; 2]", inner(range(min = -60.0, max = 85.0)), extend("x-unit" = "deg"))]
     pub rise_deg: [f64; 2],
-    /// How far limbs bend on their way, -1 (their ends hang) to 1 (they turn up), default 0.
+    /// Bend of the limbs, -1 (their ends hang) to 1 (they turn up), default 0.
     #[serde(default)]
     #[schemars(range(min = -1.0, max = 1.0))]
     pub bend: f64,
-    /// How crooked trunk and limbs are, 0 (straight) to 1, default 0.2.
+    /// Crookedness of trunk and limbs, 0 (straight) to 1, default 0.2.
     #[serde(default = "crook")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub crook: f64,
-    /// Share of the crown's height in which the trunk is still one, 0 to 1, default 1: a spruce has 1, an oak a half.
+    /// Share of the crown's height up to which the trunk does not fork, 0 to 1, default 1: a spruce has 1, an oak a
+    /// half.
     #[serde(default = "one")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub leader: f64,
@@ -52,7 +53,7 @@ pub struct LimbsSpec {
     #[serde(default = "bare")]
     #[schemars(range(min = 0.0, max = 0.95))]
     pub bare: f64,
-    /// From mass to mass along a limb, in radii of a mass, 0.3 to 6, default 1.3.
+    /// Distance from mass to mass along a limb, in radii of a mass, 0.3 to 6, default 1.3.
     #[serde(default = "apart")]
     #[schemars(range(min = 0.3, max = 6.0))]
     pub apart: f64,
@@ -81,18 +82,18 @@ const fn apart() -> f64 {
     1.3
 }
 
-/// What a seed made of a [`LimbsSpec`], in the places of its tree.
+/// Result of drawing a [`LimbsSpec`] with a seed, in the coordinates of its tree.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Drawn {
-    /// Middles of masses of foliage.
+    /// Centres of masses of foliage.
     pub(crate) masses: Vec<DVec3>,
-    /// Points along trunk and limbs, no further from one another than was asked for.
+    /// Points along trunk and limbs, at most the requested distance apart.
     pub(crate) lines: Vec<DVec3>,
 }
 
 /// A stem, from the ground or a fork to its end.
 struct Stem {
-    /// Where it starts, how high it comes, and how far aside by then.
+    /// Height of its start and of its end, and its horizontal displacement there.
     from: f64,
     to: f64,
     origin: DVec2,
@@ -103,7 +104,7 @@ struct Stem {
 }
 
 impl Stem {
-    fn at(&self, y: f64) -> DVec3 {
+    fn point_at_height(&self, y: f64) -> DVec3 {
         let up = ((y - self.from) / (self.to - self.from).max(1e-9)).clamp(0.0, 1.0);
         // It leaves at an angle and soon rises.
         let aside = self.origin + self.aside * (1.0 - (1.0 - up) * (1.0 - up));
@@ -125,13 +126,13 @@ impl LimbsSpec {
         let mut drawn = Drawn::default();
         for stem in &stems {
             let steps = ((stem.to - stem.from) / step).ceil().max(1.0);
-            let at = |i: f64| stem.at(stem.from + (stem.to - stem.from) * (i / steps));
+            let at = |i: f64| stem.point_at_height(stem.from + (stem.to - stem.from) * (i / steps));
             drawn.lines.extend(counted(steps).map(|i| at(i + 1.0)));
-            // A leader is clothed from the middle of the crown up.
+            // A leader is in leaf from the middle of the crown up.
             if self.leader > 0.95 {
                 let mut y = stem.to - 0.6 * self.mass_m * self.flat;
                 while y > (self.base_m + 0.5 * self.height()).max(stem.from) {
-                    drawn.masses.push(stem.at(y));
+                    drawn.masses.push(stem.point_at_height(y));
                     y -= self.apart * self.mass_m;
                 }
             }
@@ -141,7 +142,7 @@ impl LimbsSpec {
         let turned = stream.range(0.0, ops::TAU);
         for i in 0..limbs {
             let mut own = habit.seed.child(101).child(u64::from(i)).stream(Draw::Habit);
-            // 2.4 rad: the golden angle, off which limbs stand by chance as those on which more light fell.
+            // 2.4 rad: the golden angle, from which limbs deviate at random as those that received more light.
             let azimuth = turned + 2.399_963_23 * f64::from(i) + 0.35 * own.normal();
             let share = (f64::from(i) + own.range(0.1, 0.9)) / f64::from(limbs);
             self.limb(share, azimuth, &stems, step, &mut own, &mut drawn);
@@ -162,7 +163,7 @@ impl LimbsSpec {
         ops::lerp(a.x, b.x, ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0))
     }
 
-    /// The height within the crown below which a share of its surface lies.
+    /// Returns the height within the crown below which a share of its surface lies.
     fn height_of(&self, share: f64) -> f64 {
         let rows = 48_u32;
         let (high, widest) = (self.height(), self.profile.iter().map(|p| p.x).fold(0.0, f64::max));
@@ -178,7 +179,7 @@ impl LimbsSpec {
         high
     }
 
-    /// The trunk, and what it forks into.
+    /// Returns the trunk, and its forks.
     fn stems(&self, habit: &Habit, stream: &mut Stream) -> Vec<Stem> {
         let (high, widest) = (self.height(), self.profile.iter().map(|p| p.x).fold(0.0, f64::max));
         let top = self.base_m + high * self.leader.max(0.02)
@@ -201,7 +202,7 @@ impl LimbsSpec {
         let fork = stream.range(0.55 * self.base_m, self.base_m + 0.2 * high).min(0.8 * top).max(0.05 * top);
         let azimuth = stream.range(0.0, ops::TAU);
         let mut stems = vec![trunk(fork)];
-        let foot = stems[0].at(fork);
+        let foot = stems[0].point_at_height(fork);
         for (side, tall) in [(0.0, 1.0), (PI, stream.range(0.78, 0.98))] {
             let to = fork + (top - fork) * tall;
             let aside = turn::direction(azimuth + side) * (0.16 * widest + 0.06 * (top - fork));
@@ -210,11 +211,11 @@ impl LimbsSpec {
         stems
     }
 
-    /// One limb with its masses.
+    /// Draws one limb with its masses.
     fn limb(&self, share: f64, azimuth: f64, stems: &[Stem], step: f64, own: &mut Stream, drawn: &mut Drawn) {
         let out = turn::direction(azimuth);
         let y = self.height_of(share);
-        // A ragged edge: few limbs reach the whole profile, some go beyond it.
+        // A ragged edge: few limbs reach the whole profile, some extend beyond it.
         let ragged = 0.93 + 0.11 * own.normal().clamp(-2.5, 1.2);
         let reach = (self.radius(y) * ragged - 0.75 * self.mass_m).max(0.25 * self.mass_m);
         let rise = ops::lerp(self.rise_deg[0], self.rise_deg[1], y / self.height()) + 5.0 * own.normal();
@@ -230,7 +231,7 @@ impl LimbsSpec {
         let top = stem.map_or(trunk.to, |s| s.to);
         let start_y = start_y.clamp((0.8 * self.base_m).min(top), top);
         let stem = stem.filter(|s| s.from <= start_y).unwrap_or(trunk);
-        let start = stem.at(start_y.min(stem.to));
+        let start = stem.point_at_height(start_y.min(stem.to));
         let end = DVec3::new(out.x * reach, end_y.max(start.y - 4.0 * reach), out.y * reach);
         let along = end - start;
         let length = along.length();
@@ -252,7 +253,7 @@ impl LimbsSpec {
         self.masses(&at, length, side, own, &mut drawn.masses);
     }
 
-    /// Masses from the end of a limb inwards, to its left and right in turn.
+    /// Draws masses from the end of a limb inwards, to its left and right in turn.
     fn masses(
         &self,
         at: &dyn Fn(f64) -> DVec3,
@@ -265,7 +266,7 @@ impl LimbsSpec {
         let mut left = if own.chance(0.5) { 1.0 } else { -1.0 };
         let mut t = 1.0;
         loop {
-            // Along a steep limb masses are as near as they are flat, so that none is a ball on a rod.
+            // Along a steep limb masses are as close as they are flat, so that none is a ball on a rod.
             let steep = (at(t).y - at((t - 0.1).max(0.0)).y).abs() / (0.1 * length);
             let extent = self.mass_m * ops::lerp(1.0, self.flat.min(1.0), steep.min(1.0));
             t -= self.apart * extent * own.range(0.8, 1.2) / length;
@@ -273,7 +274,7 @@ impl LimbsSpec {
                 break;
             }
             left = -left;
-            // As a branch of a limb is the longer the further its foot is from the end.
+            // A branch of a limb is longer the farther its foot is from the end.
             let aside = (left * self.mass_m * own.range(0.4, 1.0) * (1.0 + 0.8 * (1.0 - t)))
                 .clamp(-0.5 * length, 0.5 * length);
             masses.push(at(t) + side * aside + DVec3::Y * (self.mass_m * self.flat * own.range(-0.1, 0.5)));
@@ -281,7 +282,7 @@ impl LimbsSpec {
     }
 }
 
-/// 0 to `count` - 1, at most 10,000.
+/// Iterates from 0 to `count` - 1, at most 10,000.
 fn counted(count: f64) -> impl Iterator<Item = f64> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is bounded")]
     let count = count.clamp(0.0, 1e4) as u32;

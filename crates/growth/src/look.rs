@@ -1,6 +1,6 @@
-//! What a tree looks like: the form of its leaves, its flowers, its colours and bark.
+//! Appearance of a tree: the form of its leaves, its flowers, its colours and bark.
 //!
-//! Only what is asked for: meshing and painting read it, growth does not.
+//! Only settings: meshing and painting read them, growth does not.
 
 use plant::BladeForm;
 use schemars::JsonSchema;
@@ -11,7 +11,7 @@ use spec::Colour;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BladeSpec {
-    /// The form, default ovate. A `file` goes before it.
+    /// The form, default ovate. A `file` takes precedence.
     pub form: BladeForm,
     /// A leaf of your own instead of the form: marks (.csv), a vein graph (.json) or a model of one leaf (.glb, .obj,
     /// .ply, .stl), relative to the spec. Default none.
@@ -19,7 +19,7 @@ pub struct BladeSpec {
     /// Width relative to the form's usual, 0.1 to 4; default 1.
     #[schemars(range(min = 0.1, max = 4.0))]
     pub width: Option<f64>,
-    /// How far the tip bends down, as a share of the length, -1 to 1; default the form's.
+    /// Downward bend of the tip, as a share of the length, -1 to 1; default the form's.
     #[schemars(range(min = -1.0, max = 1.0))]
     pub bend: Option<f64>,
     /// Slope of the halves along the midrib, -1 to 2; default the form's.
@@ -28,19 +28,20 @@ pub struct BladeSpec {
     /// Teeth of the margin on each side, 0 to 60; default none. Few triangles leave them out.
     #[schemars(range(min = 0, max = 60))]
     pub teeth: Option<u32>,
-    /// Of a spray: length of a needle or scale over that of the spray, 0.01 to 0.6; default 0.1.
+    /// For a spray: length of a needle or scale relative to that of the spray, 0.01 to 0.6; default 0.1.
     #[schemars(range(min = 0.01, max = 0.6))]
     pub needle: Option<f64>,
-    /// Of a spray: side shoots on each side, 0 to 12; default 3.
+    /// For a spray: side shoots on each side, 0 to 12; default 3.
     #[schemars(range(min = 0, max = 12))]
     pub shoots: Option<u32>,
 }
 
-/// What flowers a tree bears where leaves would stand.
+/// Flowers of a tree, in the place of leaves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BlossomSpec {
-    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers but those that rules set.
+    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers except those that rules
+    /// set.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub share: f64,
     /// Petals of a flower's whorl, 3 to 12, default 5.
@@ -49,19 +50,20 @@ pub struct BlossomSpec {
     /// Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's.
     #[schemars(range(min = 1, max = 6))]
     pub whorls: u32,
-    /// How far the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; of a goblet about 30.
+    /// Angle by which the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; about 30 for a
+    /// goblet.
     #[schemars(range(min = 5.0, max = 90.0), extend("x-unit" = "deg"))]
     pub open_deg: f64,
-    /// Across an open flower, metres, default 0.035.
+    /// Diameter of an open flower, metres, default 0.035.
     #[schemars(range(min = 0.001, max = 1.0), extend("x-unit" = "m"))]
     pub diameter_m: f64,
-    /// Mean length of a flower's stalk over its diameter, 0.02 to 3, default 0.7.
+    /// Mean length of a flower's stalk relative to its diameter, 0.02 to 3, default 0.7.
     #[schemars(range(min = 0.02, max = 3.0))]
     pub stalk: f64,
-    /// Width of a petal over that which closes the whorl, 0.1 to 1.5, default 1; of spikelets and plumes less.
+    /// Width of a petal relative to that which closes the whorl, 0.1 to 1.5, default 1; less for spikelets and plumes.
     #[schemars(range(min = 0.1, max = 1.5))]
     pub petal_width: f64,
-    /// Width of the tuft of stamens over that of the flower, 0 to 1, default 0.3; 0: none is seen.
+    /// Width of the tuft of stamens relative to that of the flower, 0 to 1, default 0.3; 0: none is visible.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub tuft: f64,
     /// Colour of petals, default a white.
@@ -88,7 +90,7 @@ impl Default for BlossomSpec {
     }
 }
 
-/// What the bark is like.
+/// Kind of bark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Bark {
@@ -115,12 +117,12 @@ pub enum Bark {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Look {
-    /// What the bark is like.
+    /// Kind of bark.
     pub bark: Bark,
     /// Ribs along thick stems, 0 to 32, default 0: round stems. A saguaro has 12 to 30.
     #[schemars(range(min = 0, max = 32))]
     pub ribs: u32,
-    /// Depth of the furrows between ribs over the radius of the stem, 0 to 0.5, default 0.15.
+    /// Depth of the furrows between ribs relative to the radius of the stem, 0 to 0.5, default 0.15.
     #[schemars(range(min = 0.0, max = 0.5))]
     pub rib_depth: f64,
     /// Mean colour of the bark of trunk and branches.
@@ -134,26 +136,26 @@ pub struct Look {
     pub twig_color: Colour,
     /// Colour of leaves.
     pub leaf_color: Colour,
-    /// Colour towards which single leaves vary (young growth); default that of leaves.
+    /// Colour towards which single leaves vary (young growth); default the leaf colour.
     pub leaf_color_to: Option<Colour>,
-    /// How far they vary, 0 to 1, default 0.5.
+    /// Degree of that variation, 0 to 1, default 0.5.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_variation: f64,
-    /// The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, from where leaves unfold; 0.5: all in
-    /// the colours of autumn; 1: all fallen. Evergreens stay as they are.
+    /// The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, after which leaves unfold; 0.5: all
+    /// in the colours of autumn; 1: all fallen. Evergreens do not change.
     #[schemars(range(min = -1.0, max = 1.0))]
     pub season: f64,
     /// Colour of leaves in autumn; default none: an evergreen.
     pub autumn_color: Option<Colour>,
     /// Colour towards which single leaves vary in autumn; default `autumn_color`.
     pub autumn_color_to: Option<Colour>,
-    /// Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'; in
-    /// spring they unfold nearly together, not one after another. Default false.
+    /// Whether leaves turn and fall first on the outside of the crown, as in beech and maple, and not inside, as in
+    /// birch; in spring they unfold nearly together, not one after another. Default false.
     pub autumn_outside: bool,
 }
 
 impl Look {
-    /// The season of its leaves, -1 to 1: that of summer for an evergreen.
+    /// Returns the season of its leaves, -1 to 1: always summer for an evergreen.
     pub fn leaf_season(&self) -> f64 {
         self.autumn_color.map_or(0.0, |_| self.season)
     }

@@ -1,12 +1,12 @@
-//! Whether a mesh is closed and which way it faces: for warnings, as growth bears both.
+//! Tests whether a mesh is closed and which way it faces: for warnings, as growth tolerates both.
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-/// Edges that bound one triangle only, vertices at one place taken as one. 0 for a closed mesh.
+/// Returns the number of edges that bound one triangle only, with coincident vertices merged. 0 for a closed mesh.
 ///
-/// Triangles that name vertices that are not there are skipped. Cost: n log n.
+/// Triangles that name vertices that do not exist are skipped. Cost: n log n.
 ///
 /// ```
 /// use glam::DVec3;
@@ -17,7 +17,7 @@ use glam::DVec3;
 /// ```
 pub fn open_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> usize {
     let mut uses: BTreeMap<([u64; 3], [u64; 3]), u32> = BTreeMap::new();
-    // Adding 0 turns -0 into 0, which is the same place.
+    // Adding 0 turns -0 into 0, which is the same coordinate.
     let place = |i: u32| vertices.get(i as usize).map(|p| p.to_array().map(|c| (c + 0.0).to_bits()));
     for &[a, b, c] in triangles {
         let (Some(a), Some(b), Some(c)) = (place(a), place(b), place(c)) else { continue };
@@ -30,7 +30,7 @@ pub fn open_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> usize {
     uses.values().filter(|&&n| n % 2 == 1).count()
 }
 
-/// The volume that a closed mesh bounds, m3; negative where its faces look inwards.
+/// Returns the volume that a closed mesh bounds, m3; negative if its faces point inwards.
 ///
 /// ```
 /// use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Things that a tree grows around.
+//! Obstacles that a tree grows around.
 //!
 //! `Obstacle -> Obstacles -> steer, blocks, inside`
 
@@ -28,22 +28,22 @@ pub enum Obstacle {
     },
     /// A ball.
     Sphere {
-        /// Its middle.
+        /// Its centre.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         centre: DVec3,
-        /// Above 0.
+        /// Its radius, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
     },
     /// An upright cylinder.
     Cylinder {
-        /// Middle of its base.
+        /// Centre of its base.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
-        /// Above 0.
+        /// Its radius, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
-        /// Above 0.
+        /// Its height, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         height_m: f64,
     },
@@ -52,11 +52,11 @@ pub enum Obstacle {
         /// Any point of the plane.
         #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         point: DVec3,
-        /// Away from the solid side; any length above 0.
+        /// Direction away from the solid side; any length above 0.
         #[schemars(with = "[f64; 3]")]
         normal: DVec3,
     },
-    /// A mesh, in metres, +Y up; small holes and inverted faces are borne (winding number).
+    /// A mesh, in metres, +Y up; small holes and inverted faces are tolerated (winding number).
     Mesh {
         /// Vertices.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
@@ -67,7 +67,7 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
-    /// The same elsewhere.
+    /// Returns the obstacle moved by an offset.
     #[must_use]
     pub fn moved(&self, by: DVec3) -> Self {
         let mut new = self.clone();
@@ -84,7 +84,7 @@ impl Obstacle {
 
 spec::schemas!(Obstacle => crate::TreeSpec, "/$defs/Obstacle");
 
-/// Obstacles made ready to be asked. A clone shares them.
+/// Obstacles prepared for queries. A clone shares them.
 ///
 /// ```
 /// use glam::DVec3;
@@ -112,7 +112,7 @@ enum Body {
 }
 
 impl Obstacle {
-    /// Whether every number of it is finite: only such a one can be saved.
+    /// Whether all its numbers are finite: only then can it be saved.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Box { min, max } => min.is_finite() && max.is_finite(),
@@ -125,7 +125,7 @@ impl Obstacle {
         }
     }
 
-    /// The word of its shape, as specs have it.
+    /// Returns the word of its shape in specs.
     pub const fn shape(&self) -> &'static str {
         match self {
             Self::Box { .. } => "box",
@@ -142,12 +142,12 @@ fn called(shape: &str) -> String {
 }
 
 impl Obstacles {
-    /// Nothing in the way.
+    /// Makes an empty set of obstacles.
     pub fn none() -> Self {
         Self::default()
     }
 
-    /// Checks the numbers. `clearance_m`, 0 or more: nodes keep this distance from every surface.
+    /// Checks the numbers and prepares queries. `clearance_m`, 0 or more: nodes keep this distance from every surface.
     ///
     /// # Errors
     /// [`GrowthError::Field`] for the clearance; [`GrowthError::Obstacle`] for numbers out of range or a mesh without
@@ -162,7 +162,7 @@ impl Obstacles {
         Ok(Self { bodies, clearance_m })
     }
 
-    /// The word of the shape of one of them.
+    /// Returns the word of the shape of one of them.
     pub(crate) fn name(&self, obstacle: usize) -> String {
         called(match self.bodies.get(obstacle) {
             Some(Body::Box(..)) => "box",
@@ -173,12 +173,12 @@ impl Obstacles {
         })
     }
 
-    /// Whether there are none.
+    /// Whether there are no obstacles.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 
-    /// The first obstacle in which a point lies, by index.
+    /// Returns the first obstacle in which a point lies, by index.
     pub fn inside(&self, p: DVec3) -> Option<usize> {
         self.bodies.iter().position(|b| b.inside(p))
     }
@@ -193,10 +193,10 @@ impl Obstacles {
         self.bodies.iter().any(|body| body.blocks(a, b))
     }
 
-    /// The unit direction nearest to `wish` in which one step from `from` keeps clear of every obstacle: along
-    /// the surface where the straight way leads into it. `None` where there is no way on.
+    /// Returns the unit direction nearest to `wish` in which one step from `from` keeps clear of every obstacle: along
+    /// the surface if the straight path leads into it. `None` if there is no way on.
     ///
-    /// Guaranteed: the end of the step is `free` and in view of `from`.
+    /// Guaranteed: the end of the step is `free` and visible from `from`.
     pub fn steer(&self, from: DVec3, wish: DVec3, step_m: f64) -> Option<DVec3> {
         let clear = |direction: DVec3| {
             let to = from + direction * step_m;
@@ -207,15 +207,15 @@ impl Obstacles {
         }
         let here = self.nearest(from)?;
         let mut direction = wish;
-        // Two walls that meet need two corrections, a corner three; more only in pathological places.
+        // Two walls that meet need two corrections, a corner three; only pathological cases need more.
         for round in 0..6 {
-            // First along the surface that is met, then away from whatever is still too near.
+            // First along the surface, then away from whatever is still too near.
             let there = self.nearest(from + direction * step_m)?;
             let (distance, normal) = if round == 0 { (here.0, here.1) } else { there };
             let short = (self.clearance_m - distance.min(there.0)).max(0.0);
             let mut along = direction - normal * direction.dot(normal).min(0.0);
             if along.length() < 0.05 {
-                // Head on: upwards along the surface if it rises, else any way along it.
+                // Head on: upwards along the surface if it rises, otherwise in any direction along it.
                 along = DVec3::Y - normal * normal.y;
                 if along.length() < 0.05 {
                     along = normal.any_orthonormal_vector();
@@ -227,7 +227,7 @@ impl Obstacles {
                 return Some(direction);
             }
         }
-        // Edges and thin walls: of the ways along the surface and off it, the open one nearest to the wish.
+        // At edges and thin walls: of the directions along the surface and off it, the open one nearest to the wish.
         let across = here.1.any_orthonormal_vector();
         let other = here.1.cross(across);
         let ring = (0..16).map(|k| {
@@ -239,24 +239,24 @@ impl Obstacles {
         open.reduce(|a, b| if b.dot(wish) > a.dot(wish) { b } else { a })
     }
 
-    /// The distance that everything keeps from surfaces where there is room, metres.
+    /// Returns the clearance from surfaces where there is room, metres.
     pub(crate) const fn clearance_m(&self) -> f64 {
         self.clearance_m
     }
 
-    /// How deep a point lies in an obstacle, metres; 0 outside of all.
+    /// Returns how deep a point lies in an obstacle, metres; 0 outside of all.
     pub fn depth(&self, p: DVec3) -> f64 {
         let deep = |b: &Body| if b.inside(p) { -b.distance(p).0 } else { 0.0 };
         self.bodies.iter().map(deep).fold(0.0, f64::max)
     }
 
-    /// Whether an organ keeps out of every obstacle: its frame, scale and the corners of its shape
+    /// Whether an organ is clear of every obstacle, by its frame, scale and the corners of its shape
     /// ([`plant::Shape::corners`]).
     ///
     /// Guaranteed: no corner lies in an obstacle, and none stands between its root and a corner.
     pub fn admit(&self, frame: &Frame, scale: f64, corners: &[DVec3]) -> bool {
         let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max) * scale;
-        // Most of them are far from everything.
+        // Most organs are far from everything.
         if self.bodies.iter().all(|b| b.clear(frame.origin, reach)) {
             return true;
         }
@@ -265,13 +265,14 @@ impl Obstacles {
         places.all(|p| self.inside(p).is_none() && (within || !self.blocks(frame.origin, p)))
     }
 
-    /// [`nearest`](Self::nearest) where that is less than `reach` away or inside: much faster far from meshes of slivers.
+    /// As [`nearest`](Self::nearest), if that is less than `reach` away or inside: much faster far from meshes of
+    /// slivers.
     pub(crate) fn nearest_within(&self, p: DVec3, reach: f64) -> Option<(f64, DVec3)> {
         let near = self.bodies.iter().filter(|b| !b.clear(p, reach)).map(|b| b.distance(p));
         near.reduce(|a, b| if b.0 < a.0 { b } else { a })
     }
 
-    /// Distance to the nearest surface (negative inside) and the way out of it.
+    /// Returns the distance to the nearest surface (negative inside) and the direction out of it.
     pub(crate) fn nearest(&self, p: DVec3) -> Option<(f64, DVec3)> {
         let all = self.bodies.iter().map(|b| b.distance(p));
         all.reduce(|a, b| if b.0 < a.0 { b } else { a })
@@ -308,10 +309,10 @@ impl Body {
         }
     }
 
-    /// Whether a point is at least so far outside; 0 or more.
+    /// Whether a point is at least a distance, 0 or more, outside.
     fn clear(&self, p: DVec3, distance: f64) -> bool {
         match self {
-            // A little farther, so that rounding does not decide whether it is looked at.
+            // Slightly farther, so that rounding does not decide whether it is examined.
             Self::Mesh(solid) if solid.nearest_within(p, 1e-9 + 1.001 * distance).is_none() => {
                 !solid.inside(p)
             }
@@ -319,7 +320,7 @@ impl Body {
         }
     }
 
-    /// Signed distance (negative inside) and the unit way outwards.
+    /// Returns the signed distance (negative inside) and the unit direction outwards.
     fn distance(&self, p: DVec3) -> (f64, DVec3) {
         match self {
             Self::Box(min, max) => {
@@ -361,7 +362,7 @@ impl Body {
                 let (q, face) = solid.nearest(p);
                 let d = p.distance(q);
                 let (sign, out) = if solid.inside(p) { (-1.0, q - p) } else { (1.0, p - q) };
-                // On the surface itself only the face tells which way is out.
+                // On the surface itself only the face determines the outward direction.
                 (sign * d, if d > 1e-9 { out / d } else { face })
             }
         }
@@ -382,7 +383,7 @@ impl Body {
     }
 }
 
-/// The part of the segment at the cylinder's heights, against the circle from above.
+/// Tests the part of the segment at the cylinder's heights against the circle, seen from above.
 fn segment_meets_cylinder(a: DVec3, d: DVec3, r: f64, h: f64) -> bool {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     if d.y.abs() < 1e-300 {
@@ -431,7 +432,7 @@ mod tests {
                 let p = DVec3::new(s.range(-2.0, 2.0), s.range(-1.0, 3.0), s.range(-2.0, 2.0));
                 let (d, n) = one.bodies[0].distance(p);
                 assert!((n.length() - 1.0).abs() < 1e-9, "{o:?} {p}");
-                // The way out leads to the surface, unless an edge is nearer to be rounded.
+                // The outward direction leads to the surface, unless an edge is nearer to be rounded.
                 let (there, _) = one.bodies[0].distance(p - n * d);
                 assert!(there.abs() < 1e-6, "{o:?} {p}: {d}, then {there}");
                 assert_eq!(one.inside(p).is_some(), d < 0.0, "{o:?} {p} {d}");

@@ -1,4 +1,4 @@
-//! Roots that arch from the stem down to the ground, as those of mangroves.
+//! Prop roots, which arch from the stem down to the ground, as in mangroves.
 //!
 //! `Skeleton + PropSpec -> Skeleton with props, its stem narrower below them`
 
@@ -9,16 +9,16 @@ use glam::DVec3;
 use crate::wood::{PropSpec, boles, main_children, radii};
 use crate::{JointId, Skeleton, WoodSpec};
 
-/// The key under which a seed draws props.
+/// Key under which a seed draws props.
 const PROPS: u64 = 0x70_726f_7073;
 /// Joints of a quarter of an arch.
 const STEPS: u32 = 9;
-/// Thickness of the foot of a stem that stands on props, over that above them.
+/// Thickness of the foot of a stem that stands on props, relative to that above them.
 const FOOT: f64 = 0.4;
-/// How deep props reach into the ground, in their radii.
+/// Depth to which props reach into the ground, in their radii.
 const SUNK: f64 = 2.0;
 
-/// Adds the props of each tree that has grown to a share of its height. They know nothing of obstacles.
+/// Adds the props of each tree that has grown to a share of its height. They ignore obstacles.
 pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, grown: f64, seed: Seed) {
     let spec = &wood.props;
     if spec.count == 0 || skeleton.is_empty() {
@@ -35,7 +35,7 @@ pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, grown: f64, se
             .collect();
         let top = bole.iter().map(|&j| skeleton.position[j].y - ground).fold(0.0, f64::max);
         let rise = (grown * spec.rise_m).min(top);
-        // The stem keeps the thickness that its crown asks for: props do not feed it.
+        // The stem keeps the thickness that its crown needs: props do not feed it.
         for &j in &bole {
             let up = ((skeleton.position[j].y - ground) / rise.max(1e-9)).clamp(0.0, 1.0);
             skeleton.radius_m[j] = radius[j] * ops::lerp(FOOT, 1.0, up);
@@ -50,7 +50,7 @@ pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, grown: f64, se
     }
 }
 
-/// What the arches of one tree share.
+/// Common data of the arches of one tree.
 struct Arch<'a> {
     ground: f64,
     grown: f64,
@@ -83,7 +83,7 @@ impl Arch<'_> {
         }
     }
 
-    /// A quarter of an ellipse from a joint down to the ground, a little lifted where it begins.
+    /// Makes a quarter of an ellipse from a joint down to the ground, slightly raised at its start.
     fn quarter(
         &self,
         skeleton: &mut Skeleton,
@@ -139,7 +139,7 @@ mod tests {
         assert!((1.5..2.4).contains(&highest), "{highest}");
         let r = &whole.radius_m;
         assert!(r[25] == 0.1 && r[1] < 0.06, "{} {}", r[25], r[1]);
-        // Another seed has others, a young tree lower ones, and none means none.
+        // Another seed has different ones, a young tree lower ones, and a count of 0 has none.
         let made = |life, seed| {
             let mut s = full.clone();
             add_props(&mut s, &wood, life, Seed::new(seed));

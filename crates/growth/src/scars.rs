@@ -1,9 +1,9 @@
-//! What stems keep of branches that they lost, and what grows over it: stubs, knots, burls, hollows, broken limbs.
+//! Remains of lost branches on stems, and the wood that grew over them: stubs, knots, burls, hollows, broken limbs.
 //!
 //! `Plant of wood + ScarSpec -> Plant with axes of stubs`
 //!
-//! A branch in the shade dies, breaks off some way from the stem, and its stub is grown over; where it rots before that, a
-//! hollow is left (Shigo, A New Tree Biology, 1986; Mattheck and Breloer, The Body Language of Trees, 1994).
+//! A branch in the shade dies, breaks off some distance from the stem, and its stub is grown over; if it rots before
+//! that, a hollow remains (Shigo, A New Tree Biology, 1986; Mattheck and Breloer, The Body Language of Trees, 1994).
 
 use core::ops::Range;
 
@@ -15,31 +15,32 @@ use plant::{AxisId, AxisKind, NodeId, Plant};
 use crate::wood::ScarSpec;
 use crate::{Obstacles, WoodSpec};
 
-/// The key under which a seed draws them.
+/// Key under which a seed draws scars.
 const SCARS: u64 = 0x0073_6361_7273;
-/// Stems of this radius, metres, have no stubs and knots yet, and those of that radius as many as there are.
+/// Stem radii, metres, from which stubs and knots appear, and from which they are complete.
 const SHED: [f64; 2] = [0.04, 0.10];
-/// The same of burls, hollows and broken limbs: of old stems.
+/// The same for burls, hollows and broken limbs: those of old stems.
 const OLD: [f64; 2] = [0.10, 0.25];
-/// A branch is borne where one starts that is thicker than this share of the stem there.
+/// Thickness of a borne axis, as a share of the stem there, above which it counts as a branch.
 const BRANCH: f64 = 0.12;
-/// What is drawn for a place in vain, as another lies there, so often.
+/// Draws for a place, if others lie there, before it is given up.
 const TRIES: u32 = 6;
-/// How far scars lie apart, in the sum of their radii.
+/// Least distance of scars, in the sum of their radii.
 const APART: f64 = 1.8;
-/// The angle between a branch that broke off and its stem, and how much it differs, radians.
+/// Angle between a broken branch and its stem, radians.
 const ANGLE: f64 = 1.2;
+/// Variation of that angle, radians.
 const SPREAD: f64 = 0.35;
-/// A dome's height over its radius.
+/// Height of a dome relative to its radius.
 const DOME: f64 = 0.55;
-/// Pieces between the nodes of what stands out of the bark.
+/// Pieces between the nodes of a scar.
 const STEPS: u32 = 6;
-/// Hollows lie above this height, in radii of the foot: below, the flare of the stem as it is drawn would bury them.
+/// Least height of hollows, in radii of the foot: lower ones would be buried in the flare of the drawn stem.
 const ABOVE_FLARE: f64 = 2.5;
-/// How far a rim stands out, over its radius.
+/// Height of a rim relative to its radius.
 const RIM: f64 = 0.4;
 
-/// What is left in a place.
+/// Kind of a scar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scar {
     Stub,
@@ -49,9 +50,9 @@ enum Scar {
     BrokenLimb,
 }
 
-/// Adds what lost branches leave to every stem that stands on the ground; nothing where an obstacle stands.
+/// Adds the scars of lost branches to every stem that stands on the ground, except inside obstacles.
 ///
-/// They draw nothing from the shoot and count for none of its measures ([`AxisKind::Stub`]).
+/// They draw nothing from the shoot and do not count in its measures ([`AxisKind::Stub`]).
 pub(crate) fn add_scars(plant: &mut Plant, wood: &WoodSpec, obstacles: &Obstacles, seed: Seed) {
     if wood.scars == ScarSpec::default() {
         return;
@@ -62,25 +63,25 @@ pub(crate) fn add_scars(plant: &mut Plant, wood: &WoodSpec, obstacles: &Obstacle
         .collect();
     for stem in stems {
         let seed = seed.child(SCARS).child(plant.axis(stem).key);
-        Stem::of(plant, stem, obstacles).scar(plant, &wood.scars, seed);
+        Stem::measure(plant, stem, obstacles).scar(plant, &wood.scars, seed);
     }
 }
 
-/// A stem, and what is on it so far.
+/// A stem, and its scars so far.
 struct Stem<'a> {
     nodes: Vec<NodeId>,
     /// Arc length of each node from the foot, metres.
     way: Vec<f64>,
     radius: Vec<f64>,
-    /// The way to its first branch.
+    /// Length from the foot to its first branch.
     clear: f64,
     obstacles: &'a Obstacles,
-    /// Where scars lie: place on the bark, radius.
+    /// Positions of scars on the bark, and their radii.
     taken: Vec<(DVec3, f64)>,
 }
 
 impl<'a> Stem<'a> {
-    fn of(plant: &Plant, stem: AxisId, obstacles: &'a Obstacles) -> Self {
+    fn measure(plant: &Plant, stem: AxisId, obstacles: &'a Obstacles) -> Self {
         let nodes: Vec<NodeId> = plant.axis(stem).node_ids().collect();
         let radius = plant.axis_radii(stem).to_vec();
         let mut way = vec![0.0; nodes.len()];
@@ -105,12 +106,12 @@ impl<'a> Stem<'a> {
         Self { nodes, way, radius, clear, obstacles, taken }
     }
 
-    /// Puts all on it that the spec asks of a stem so thick.
+    /// Adds all scars that the spec sets for a stem of this thickness.
     fn scar(&mut self, plant: &mut Plant, spec: &ScarSpec, seed: Seed) {
         let foot = self.radius.first().copied().unwrap_or(0.0);
         let whole = self.way.last().copied().unwrap_or(0.0);
         let (shed, old) = (ops::smoothstep(SHED[0], SHED[1], foot), ops::smoothstep(OLD[0], OLD[1], foot));
-        // Branches go from below: the highest stubs are the freshest, the lowest knots long grown over.
+        // Branches are lost from below: the highest stubs are the freshest, the lowest knots long grown over.
         let stubs = 0.25 * self.clear..(1.3 * self.clear).min(0.8 * whole);
         let knots = 0.12 * self.clear..(1.5 * self.clear).min(0.7 * whole);
         let low = 0.05 * self.clear..(1.1 * self.clear).min(0.6 * whole);
@@ -134,13 +135,13 @@ impl<'a> Stem<'a> {
         }
     }
 
-    /// One scar somewhere in a range of the stem, where nothing lies yet.
+    /// Adds one scar somewhere in a range of the stem, where nothing lies yet.
     fn add(&mut self, plant: &mut Plant, what: Scar, range: &Range<f64>, seed: Seed) {
         let mut draw = seed.stream(Draw::Habit);
         for _ in 0..TRIES {
             let (share, turn, lean, size) = (draw.uniform(), draw.uniform(), draw.uniform(), draw.uniform());
             let at = range.start + share * (range.end - range.start);
-            // A node of its own place, not the foot, where roots leave, nor the tip.
+            // A node of its own place, excluding the foot, where roots leave, and the tip.
             let k = self.way.partition_point(|w| *w < at);
             if k == 0 || k + 1 >= self.nodes.len() {
                 continue;
@@ -165,22 +166,22 @@ impl<'a> Stem<'a> {
     }
 }
 
-/// How far along what stands out of the bark its nodes lie, 0 to 1.
+/// Iterates over the positions of the nodes along a scar, 0 to 1.
 fn shares() -> impl Iterator<Item = f64> {
     (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS))
 }
 
-/// The course of a scar: from the middle of the stem outwards.
+/// The course of a scar: from the centre of the stem outwards.
 struct Course {
     what: Scar,
     way: DVec3,
-    /// How thick it is where it leaves the stem, and how far it reaches beyond the bark, metres.
+    /// Its radius where it leaves the stem, and its length beyond the bark, metres.
     radius: f64,
     beyond: f64,
 }
 
 impl Course {
-    /// On a stem of radius `r` that leads `up`; none on one so thin that it would have nothing to show.
+    /// Makes a scar on a stem of radius `r` that leads `up`; `None` if the stem is so thin that nothing would show.
     fn new(what: Scar, r: f64, (up, turn, lean, size): (DVec3, f64, f64, f64)) -> Option<Self> {
         let (radius, beyond) = match what {
             Scar::Stub => {
@@ -222,7 +223,8 @@ impl Course {
         })
     }
 
-    /// Its nodes; the first is the bearer's place. Of one that leaves the stem at a slant less shows, as `r` is measured along it.
+    /// Returns its nodes; the first is at the bearer. A scar that leaves the stem at a slant shows less, as `r` is
+    /// measured along it.
     fn points(&self, centre: DVec3, r: f64) -> Vec<DVec3> {
         let bend = match self.what {
             Scar::BrokenLimb => DVec3::Y * (0.12 * self.beyond),
@@ -232,7 +234,7 @@ impl Course {
         core::iter::once(centre).chain(shares().map(at)).collect()
     }
 
-    /// The radius of each node.
+    /// Returns the radius of each node.
     fn radii(&self) -> Vec<f64> {
         let at = |t: f64| match self.what {
             Scar::Stub => 1.0 - 0.3 * t,
@@ -250,7 +252,7 @@ mod tests {
     use super::*;
     use crate::Obstacle;
 
-    /// A stem of 10 m, so thick, with one branch at 6 m.
+    /// Makes a stem of 10 m with this radius and one branch at 6 m.
     fn stem(radius: f64) -> Plant {
         let mut plant = Plant::default();
         let line: Vec<DVec3> = (0..=100).map(|k| DVec3::Y * (0.1 * f64::from(k))).collect();
@@ -298,7 +300,7 @@ mod tests {
     fn thin_stems_have_none_and_obstacles_keep_them_away() {
         assert_eq!(scarred(0.03, &all(), &Obstacles::none(), 1).axes.len(), 2);
         assert_eq!(scarred(0.3, &ScarSpec::default(), &Obstacles::none(), 1).axes.len(), 2);
-        // Of a stem of 8 cm only what it has shed.
+        // A stem of 8 cm has only lost branches.
         let old = ScarSpec { stubs: 0.0, knots: 0.0, ..all() };
         assert_eq!(scarred(0.08, &old, &Obstacles::none(), 1).axes.len(), 2);
         assert!(scarred(0.08, &all(), &Obstacles::none(), 1).axes.len() > 6);

@@ -1,4 +1,4 @@
-//! How a hand sets down what a tree grows around.
+//! Placement of obstacles by hand.
 //!
 //! `Obstacle, SetDown -> Obstacle`
 
@@ -9,19 +9,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::Obstacle;
 
-/// A thing is made larger and turned about a place, and then moved.
+/// A movement: scaling and rotation about a point, followed by a translation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SetDown {
-    /// What is larger and turned from; metres.
+    /// Fixed point of the scaling and rotation; metres.
     #[schemars(with = "[f64; 3]")]
     pub about: DVec3,
-    /// A quaternion (x, y, z, w) of any length above 0.
+    /// Rotation as a quaternion (x, y, z, w) of any length above 0.
     #[schemars(with = "[f64; 4]")]
     pub turn: DQuat,
-    /// So many times as large, 0.01 to 100.
+    /// Factor on the size, 0.01 to 100.
     pub times: f64,
-    /// Metres.
+    /// Offset, metres.
     #[schemars(with = "[f64; 3]")]
     pub by: DVec3,
 }
@@ -32,13 +32,13 @@ impl Default for SetDown {
     }
 }
 
-/// Turned by less, radians, a thing stands as it did: no hand does that on purpose.
+/// Rotation, radians, below which an obstacle counts as upright as before: nobody makes a smaller one on purpose.
 const STEADY: f64 = 0.05;
-/// Sides of a cylinder that does not stand upright any more.
+/// Sides of a cylinder that is no longer upright.
 const SIDES: u32 = 32;
-/// No place is further from the origin, metres.
+/// Largest distance of a place from the origin, metres.
 const FAR_M: f64 = 1e5;
-/// Faces of a box whose corner `k` is at its upper end in x, y and z where bits 0, 1 and 2 of `k` are set.
+/// Faces of a box whose corner `k` is at its upper end in x, y and z if bits 0, 1 and 2 of `k` are set.
 const FACES: [[u32; 3]; 12] = [
     [0, 2, 3],
     [0, 3, 1],
@@ -55,7 +55,7 @@ const FACES: [[u32; 3]; 12] = [
 ];
 
 impl SetDown {
-    /// The same with a turn of length 1, and none where it is hardly any; `None` for numbers out of range.
+    /// Returns the same with a rotation of length 1, or none if it is negligible; `None` for numbers out of range.
     pub fn sound(self) -> Option<Self> {
         let Self { about, turn, times, by } = self;
         let near = |p: DVec3| p.is_finite() && p.abs().max_element() <= FAR_M;
@@ -74,8 +74,8 @@ impl SetDown {
 }
 
 impl Obstacle {
-    /// As a hand sets it down. Boxes and cylinders that do not stand as they did are meshes from then on, cylinders of 32
-    /// sides. `how` must be [sound](SetDown::sound).
+    /// Returns the obstacle after a movement. Boxes and cylinders that are tilted become meshes, cylinders of 32 sides.
+    /// `how` must be [sound](SetDown::sound).
     ///
     /// ```
     /// use glam::{DQuat, DVec3};
@@ -104,7 +104,7 @@ impl Obstacle {
                 let corners = (0..8).map(|k| put(DVec3::new(end(k, 0), end(k, 1), end(k, 2))));
                 Self::Mesh { vertices: corners.collect(), triangles: FACES.to_vec() }
             }
-            // Turned about itself it is the same one.
+            // Rotated about itself it is the same one.
             Self::Cylinder { base, radius_m, height_m } if (turn * DVec3::Y).y > 1.0 - 1e-9 => {
                 Self::Cylinder { base: put(*base), radius_m: radius_m * times, height_m: height_m * times }
             }

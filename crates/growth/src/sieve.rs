@@ -1,18 +1,19 @@
-//! The inner loops of the search for points near a new joint: which cells, which groups of points.
+//! The inner loops of the search for points near a new joint: the cells, then the groups of points.
 //!
-//! Eight numbers at a time. What they let through is tested exactly afterwards, so only time depends on them; yet AVX2
-//! and the plain form give the same bits, as neither fuses products and sums.
+//! Eight numbers at a time. Everything that passes is tested exactly afterwards, so only time depends on these loops;
+//! yet AVX2 and the plain form give the same bits, as neither fuses products and sums.
 
-/// Points that are sifted together, and cells.
+/// Points, or cells, that are filtered together.
 pub(crate) const LANES: usize = 8;
-/// Cells along a side of a block, and in a block.
+/// Cells along a side of a block.
 pub(crate) const SIDE: usize = 4;
+/// Cells in a block.
 pub(crate) const BLOCK: usize = SIDE * SIDE * SIDE;
 
 type Lane = [f32; LANES];
 
-/// Eight points, measured from the grid's corner, and no less than their squared distances to their joints. Where there
-/// is no point, that is minus infinity.
+/// Eight points, measured from the grid's corner, with upper bounds of their squared distances to their joints. Where
+/// there is no point, the bound is minus infinity.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct Sieve {
@@ -26,7 +27,7 @@ pub(crate) struct Sieve {
 pub(crate) const EMPTY: Sieve =
     Sieve { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES], best2: [f32::NEG_INFINITY; LANES] };
 
-/// Where a new joint is, as in the sieve, and what a squared distance there may be too large by.
+/// Position of a new joint, as in the sieve, and the error bound of a squared distance there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
     pub(crate) at: [f32; 3],
@@ -41,7 +42,7 @@ pub(crate) struct Near {
     pub(crate) cell: u32,
 }
 
-/// Cells to be sifted.
+/// Cells to be filtered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cells<'a> {
     /// Their numbers.
@@ -53,39 +54,40 @@ pub(crate) struct Cells<'a> {
     pub(crate) sieve: &'a [Sieve],
 }
 
-/// Calls the form of a loop for this processor.
+/// Calls the variant of a loop for this processor.
 macro_rules! fastest {
     ($call:ident($($argument:expr),*)) => {{
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             #[expect(unsafe_code, reason = "the processor has AVX2, as was just asked; two thirds of the time")]
-            // SAFETY: the feature is there.
+            // SAFETY: the feature is available.
             return unsafe { avx2::$call($($argument),*) };
         }
         plain::$call($($argument),*)
     }};
 }
 
-/// A bit for each cell of a block that reaches farther, `reach2`, than it is away: the sum of squared `gaps` by axis.
+/// Returns a bit for each cell of a block whose reach, `reach2`, exceeds its distance: the sum of squared `gaps` by
+/// axis.
 #[inline]
 pub(crate) fn near_in(reach2: &[f32; BLOCK], gaps: &[[f32; SIDE]; 3]) -> u64 {
     fastest!(near_in(reach2, gaps))
 }
 
-/// Sifts cells: `found` gets the groups with points that may be nearer to the joint; their number. There must be room
-/// for all groups and one more.
+/// Filters cells: `found` receives the groups with points that may be nearer to the joint. Returns their number. There
+/// must be room for all groups and one more.
 #[inline]
 pub(crate) fn near_groups(cells: Cells<'_>, probe: &Probe, found: &mut [Near]) -> usize {
     fastest!(near_groups(cells, probe, found))
 }
 
-/// The loops for one set of instructions.
+/// Defines the loops for one set of instructions.
 macro_rules! loops {
     ($(#[$feature:meta])?) => {
         $(#[$feature])?
         pub(super) fn near_in(reach2: &[f32; BLOCK], gaps: &[[f32; SIDE]; 3]) -> u64 {
             let [gx, gy, gz] = gaps;
-            // Two rows of cells side by side.
+            // Two adjacent rows of cells.
             let mut rows = [[0.0; LANES]; 2];
             for (n, gap) in rows.as_flattened_mut().iter_mut().enumerate() {
                 *gap = gx[n % SIDE] + gy[n / SIDE];
@@ -217,7 +219,7 @@ mod tests {
                     best2: lane(&mut any),
                 })
                 .collect();
-            // Cell 1 is empty, cell 2 not asked for.
+            // Cell 1 is empty, cell 2 is not requested.
             let cells =
                 Cells { near: &[0, 1, 3], start: &[0, 16, 16, 32], left: &[9, 0, 12, 16], sieve: &sieve };
             let probe = Probe { at: [any(), any(), any()], slack: 0.01 };

@@ -1,4 +1,4 @@
-//! The bare structure that growth makes: joints, each with the one it grew from.
+//! The bare structure that growth makes: joints, each with its parent.
 //!
 //! `grower -> Skeleton -> prune, at_age, to_plant`
 
@@ -10,7 +10,7 @@ base::define_id! {
     pub struct JointId;
 }
 
-/// A forest of joints. A joint always comes after the one it grew from.
+/// A forest of joints. A joint always comes after its parent.
 ///
 /// ```
 /// use glam::DVec3;
@@ -23,19 +23,19 @@ base::define_id! {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skeleton {
-    /// Metres, +Y up.
+    /// Position, metres, +Y up.
     pub position: Vec<DVec3>,
-    /// What each joint grew from; `None` for roots.
+    /// Parent of each joint; `None` for roots.
     pub parent: Vec<Option<JointId>>,
     /// Index of the tree that each joint belongs to.
     pub tree: Vec<u32>,
-    /// The step of growth in which each joint came to be.
+    /// The step of growth in which each joint appeared.
     pub birth: Vec<u32>,
-    /// The radius that a joint has had at least (wood is never lost again); 0 where growth kept no account.
+    /// Least radius of a joint (wood never shrinks); 0 if growth did not compute it.
     pub radius_m: Vec<f64>,
 }
 
-/// Something wrong with a skeleton: always our bug.
+/// A fault of a skeleton: always our bug.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SkeletonFault {
@@ -54,7 +54,7 @@ pub enum SkeletonFault {
 }
 
 impl Skeleton {
-    /// Number of joints.
+    /// Returns the number of joints.
     pub const fn len(&self) -> usize {
         self.position.len()
     }
@@ -69,7 +69,7 @@ impl Skeleton {
         self.add(at, None, tree, 0)
     }
 
-    /// Adds a joint that grew from `parent`.
+    /// Adds a child of `parent`.
     pub fn push(&mut self, at: DVec3, parent: JointId, birth: u32) -> JointId {
         self.add(at, Some(parent), self.tree[parent.index()], birth)
     }
@@ -83,7 +83,7 @@ impl Skeleton {
         JointId::new(self.position.len() - 1)
     }
 
-    /// The unit direction in which a joint grew; up for roots.
+    /// Returns the unit direction in which a joint grew; up for roots.
     pub fn heading(&self, joint: JointId) -> DVec3 {
         let from = self.parent[joint.index()].map_or(DVec3::ZERO, |p| self.position[p.index()]);
         if self.parent[joint.index()].is_none() {
@@ -92,19 +92,19 @@ impl Skeleton {
         (self.position[joint.index()] - from).normalize_or(DVec3::Y)
     }
 
-    /// The diagonal of the box around all joints, metres.
+    /// Returns the diagonal of the box around all joints, metres.
     pub(crate) fn size(&self) -> f64 {
         let all = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (lo, hi) = self.position.iter().fold(all, |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         if self.is_empty() { 0.0 } else { lo.distance(hi) }
     }
 
-    /// The last step of growth.
+    /// Returns the last step of growth.
     pub fn age(&self) -> u32 {
         self.birth.iter().copied().max().unwrap_or(0)
     }
 
-    /// The skeleton as it was after step `age`. Radii are forgotten, as they were thinner then.
+    /// Returns the skeleton as it was after step `age`. Radii are dropped, as they were smaller then.
     #[must_use]
     pub fn at_age(&self, age: u32) -> Self {
         let mut young = self.keep(|j| self.birth[j] <= age);
@@ -112,7 +112,7 @@ impl Skeleton {
         young
     }
 
-    /// The skeleton without `joint` and all that grew from it. Everything else stays as it is and in order.
+    /// Returns the skeleton without `joint` and all that grew from it. Everything else stays as it is and in order.
     ///
     /// ```
     /// use glam::DVec3;
@@ -129,7 +129,7 @@ impl Skeleton {
         self.keep(|j| j != joint.index())
     }
 
-    /// The joints for which `stays` holds; what loses its parent goes too.
+    /// Returns the joints for which `stays` holds; joints without their parent are removed too.
     #[must_use]
     pub fn keep(&self, stays: impl Fn(usize) -> bool) -> Self {
         self.keep_mapped(stays).0
@@ -154,13 +154,13 @@ impl Skeleton {
         (kept, new_id)
     }
 
-    /// One tree of several.
+    /// Returns one tree of several.
     #[must_use]
     pub fn tree(&self, tree: u32) -> Self {
         self.keep(|j| self.tree[j] == tree)
     }
 
-    /// Number of children of each joint.
+    /// Returns the number of children of each joint.
     pub fn children(&self) -> Vec<u32> {
         let mut children = vec![0; self.len()];
         for p in self.parent.iter().flatten() {
@@ -169,7 +169,7 @@ impl Skeleton {
         children
     }
 
-    /// Everything that is wrong. Cost: linear.
+    /// Iterates over all faults. Cost: linear.
     pub fn validate(&self) -> impl Iterator<Item = SkeletonFault> + '_ {
         let n = self.len();
         let ragged = [self.parent.len(), self.tree.len(), self.birth.len(), self.radius_m.len()]

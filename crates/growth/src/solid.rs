@@ -1,4 +1,4 @@
-//! A triangle mesh as a volume: inside, nearest point, blocked views.
+//! A triangle mesh as a volume: inside test, nearest point, blocked views.
 //!
 //! `vertices + triangles -> bounding-volume tree -> answers`
 
@@ -9,16 +9,17 @@ use crate::error::{SolidFault, usable};
 
 /// Triangles per leaf of the tree.
 const LEAF: usize = 4;
-/// Nodes waiting in a walk: two per level, and median splits of fewer than 2^32 triangles have under 32 levels.
+/// Capacity of the stack of a walk: two nodes per level, and median splits of fewer than 2^32 triangles have under 32
+/// levels.
 const STACK: usize = 80;
 
-/// A mesh that answers questions about the volume within; holes and inverted faces are borne (see `inside`).
+/// A mesh as a volume for queries; holes and inverted faces are tolerated (see `inside`).
 #[derive(Clone, Debug)]
 pub(crate) struct Solid {
     triangles: Vec<[DVec3; 3]>,
     nodes: Vec<Node>,
-    /// Of a surface without holes whose faces all look outwards, or all inwards: the axis along which a ray meets fewest
-    /// boxes.
+    /// Axis along which a ray meets fewest boxes, for a surface without holes whose faces all point outwards, or all
+    /// inwards.
     ray: Option<usize>,
 }
 
@@ -30,7 +31,7 @@ struct Node {
     end: u32,
     /// The second child; the first follows its parent. 0 for a leaf.
     right: u32,
-    /// Sum of area vectors and where it acts: what the node looks like from afar.
+    /// Sum of area vectors and its point of action: the far field of the node.
     dipole: DVec3,
     centre: DVec3,
     radius: f64,
@@ -53,7 +54,7 @@ impl Solid {
             }
             triangles.push(t);
         }
-        // Before those without area go: they may join others.
+        // Before triangles without area are removed: they may connect others.
         let whole = sealed(&triangles);
         triangles.retain(|t| area(t).length_squared() > 0.0);
         if triangles.is_empty() || triangles.len() > u32::MAX as usize {
@@ -92,8 +93,9 @@ impl Solid {
         (self.nodes[0].lo, self.nodes[0].hi)
     }
 
-    /// Inside by the generalised winding number (Jacobson et al. 2013; the tree as in Barill et al. 2018): its
-    /// size above one half. So inverted meshes count as right ones, and small holes do not matter.
+    /// Whether a point lies inside, by the generalised winding number (Jacobson et al. 2013; the tree as in Barill et
+    /// al. 2018): its absolute value above one half. So inverted meshes count as correct ones, and small holes do not
+    /// matter.
     pub(crate) fn inside(&self, p: DVec3) -> bool {
         let (lo, hi) = self.bounds();
         if p.cmplt(lo).any() || p.cmpgt(hi).any() {
@@ -105,10 +107,10 @@ impl Solid {
         }
     }
 
-    /// The winding number of a sealed surface by what a ray along an axis leaves, less what it enters.
+    /// Returns the winding number of a sealed surface by the crossings of a ray along an axis: exits minus entries.
     ///
-    /// Exact but on the surface itself: an edge tells the same of a ray to both of its triangles. Where [`winding`] has to
-    /// look at every sliver of a tall tower, a level ray meets two.
+    /// Exact except on the surface itself: an edge gives both of its triangles the same decision about a ray. Where
+    /// [`winding`] has to examine every sliver of a tall tower, a horizontal ray meets two.
     ///
     /// [`winding`]: Self::winding
     fn crossings(&self, p: DVec3, axis: usize) -> i32 {
@@ -151,15 +153,15 @@ impl Solid {
         sum / (4.0 * PI)
     }
 
-    /// The nearest point of the surface and the (unit) normal of its triangle.
+    /// Returns the nearest point of the surface and the (unit) normal of its triangle.
     pub(crate) fn nearest(&self, p: DVec3) -> (DVec3, DVec3) {
-        // There is a triangle: `new` saw to it.
+        // There is a triangle: `new` guarantees it.
         self.nearest_within(p, f64::INFINITY).unwrap_or((p, DVec3::Y))
     }
 
-    /// [`nearest`](Self::nearest), if it is at most `reach` away; much faster where nothing is.
+    /// As [`nearest`](Self::nearest), if it is at most `reach` away; much faster where nothing is.
     ///
-    /// The nearer child first, so that the other one is seldom looked at; of triangles at one distance the first.
+    /// The nearer child first, so that the other one is seldom visited; of triangles at equal distance the first.
     pub(crate) fn nearest_within(&self, p: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
         let gap2 = |at: usize| {
             let Node { lo, hi, .. } = self.nodes[at];
@@ -172,7 +174,7 @@ impl Solid {
         while waiting > 0 {
             waiting -= 1;
             let (at, gap) = stack[waiting];
-            // With room for rounding: an earlier triangle at the same distance counts.
+            // With a margin for rounding: an earlier triangle at the same distance counts.
             if gap > best.0 * (1.0 + 1e-9) {
                 continue;
             }
@@ -212,7 +214,7 @@ impl Solid {
         hit
     }
 
-    /// Visits nodes; the children of a node only where `visit` says so.
+    /// Visits nodes; the children of a node only if `visit` returns true.
     fn walk(&self, mut visit: impl FnMut(&Node, &[[DVec3; 3]]) -> bool) {
         let mut stack = [0_u32; STACK];
         let mut waiting = 1;
@@ -230,9 +232,9 @@ impl Solid {
     }
 }
 
-/// Whether each edge is gone along as often one way as the other: no hole, and no face that looks the other way.
+/// Whether each edge is traversed equally often in both directions: no hole, and no inverted face.
 fn sealed(triangles: &[[DVec3; 3]]) -> bool {
-    // Adding 0 turns -0 into 0, which is the same place.
+    // Adding 0 turns -0 into 0, which is the same coordinate.
     let place = |p: DVec3| p.to_array().map(|c| (c + 0.0).to_bits());
     let mut edges = Vec::with_capacity(3 * triangles.len());
     for t in triangles {
@@ -247,8 +249,8 @@ fn sealed(triangles: &[[DVec3; 3]]) -> bool {
     edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|same| same.iter().map(|e| e.2).sum::<i32>() == 0)
 }
 
-/// How many boxes of triangles lie at a place of the surface, in the mean: their larger sides over the surface. Two or
-/// three for even triangles; what it takes to find the nearest of them grows with it. Bad corners count nothing.
+/// Returns the mean number of boxes of triangles at a place of the surface: their larger sides over the surface. Two or
+/// three for even triangles; the time to find the nearest of them grows with it. Bad corners count nothing.
 pub(crate) fn slivers(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     let (mut boxes, mut surface) = (0.0, 0.0);
     for corners in triangles {
@@ -261,7 +263,7 @@ pub(crate) fn slivers(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     if surface > 0.0 { boxes / surface } else { 0.0 }
 }
 
-/// The axis along which triangles hide least of one another, by their boxes.
+/// Returns the axis along which triangles hide least of one another, by their boxes.
 fn emptiest_axis(triangles: &[[DVec3; 3]]) -> usize {
     let mut hidden = DVec3::ZERO;
     for t in triangles {
@@ -271,7 +273,7 @@ fn emptiest_axis(triangles: &[[DVec3; 3]]) -> usize {
     (0..3).min_by(|&a, &b| hidden[a].total_cmp(&hidden[b])).unwrap_or(0)
 }
 
-/// How often a triangle goes around a point, both seen along an axis: -1, 0 or 1.
+/// Returns the winding number of a triangle around a point, both seen along an axis: -1, 0 or 1.
 fn turns(t: &[DVec3; 3], p: DVec3, u: usize, v: usize) -> i32 {
     let mut sum = 0;
     for i in 0..3 {
@@ -279,7 +281,7 @@ fn turns(t: &[DVec3; 3], p: DVec3, u: usize, v: usize) -> i32 {
         let up = a[v] <= p[v] && p[v] < b[v];
         let down = b[v] <= p[v] && p[v] < a[v];
         if up || down {
-            // From the lower end, whichever triangle asks: both get the same number.
+            // From the lower end, for either triangle: both get the same number.
             let (low, high) = if up { (a, b) } else { (b, a) };
             let left = (high[u] - low[u]) * (p[v] - low[v]) - (p[u] - low[u]) * (high[v] - low[v]);
             if left > 0.0 {
@@ -314,12 +316,12 @@ fn summary(triangles: &[[DVec3; 3]], start: usize, end: usize) -> Node {
     Node { lo, hi, start: row(start), end: row(end), right: 0, dipole, centre, radius }
 }
 
-/// Normal of a triangle with its area as length.
+/// Returns the normal of a triangle with its area as length.
 fn area(t: &[DVec3; 3]) -> DVec3 {
     (t[1] - t[0]).cross(t[2] - t[0]) * 0.5
 }
 
-/// Van Oosterom and Strackee 1983.
+/// Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983).
 fn solid_angle(t: &[DVec3; 3], p: DVec3) -> f64 {
     let (a, b, c) = (t[0] - p, t[1] - p, t[2] - p);
     let (la, lb, lc) = (a.length(), b.length(), c.length());
@@ -328,7 +330,7 @@ fn solid_angle(t: &[DVec3; 3], p: DVec3) -> f64 {
     2.0 * ops::atan2(over, under)
 }
 
-/// The nearest point by the regions of the triangle: a corner, an edge or the face.
+/// Returns the nearest point by the regions of the triangle: a corner, an edge or the face.
 fn closest_on_triangle(t: &[DVec3; 3], p: DVec3) -> DVec3 {
     let on_edge = |a: DVec3, b: DVec3| {
         let d = b - a;
@@ -352,7 +354,7 @@ fn closest_on_triangle(t: &[DVec3; 3], p: DVec3) -> DVec3 {
     best
 }
 
-/// Slab test.
+/// Tests a segment against a box by slabs.
 pub(crate) fn segment_meets_box(a: DVec3, d: DVec3, lo: DVec3, hi: DVec3) -> bool {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for i in 0..3 {
@@ -369,7 +371,7 @@ pub(crate) fn segment_meets_box(a: DVec3, d: DVec3, lo: DVec3, hi: DVec3) -> boo
     enter <= leave
 }
 
-/// Moeller and Trumbore 1997, both sides.
+/// Tests a segment against both sides of a triangle (Moeller and Trumbore 1997).
 fn segment_meets_triangle(a: DVec3, d: DVec3, t: &[DVec3; 3]) -> bool {
     let (e1, e2) = (t[1] - t[0], t[2] - t[0]);
     let h = d.cross(e2);
@@ -389,7 +391,7 @@ fn segment_meets_triangle(a: DVec3, d: DVec3, t: &[DVec3; 3]) -> bool {
 pub(crate) mod tests {
     use super::*;
 
-    /// A box from 0 to 1, outward faces.
+    /// Makes a box from 0 to 1, with outward faces.
     pub(crate) fn cube() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let v = (0..8)
             .map(|i| DVec3::new(f64::from(i & 1), f64::from((i >> 1) & 1), f64::from((i >> 2) & 1)))
@@ -411,7 +413,7 @@ pub(crate) mod tests {
         (v, t)
     }
 
-    /// A sphere of radius 1 by rings and sectors.
+    /// Makes a sphere of radius 1 by rings and sectors.
     pub(crate) fn sphere(rings: u32, sectors: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let mut v = vec![];
         for i in 0..=rings {
@@ -432,7 +434,7 @@ pub(crate) mod tests {
         (v, t)
     }
 
-    /// A cylinder of radius 1 and height 4 of slivers, as tall as it is, with fans at both ends.
+    /// Makes a cylinder of radius 1 and height 4 of slivers, as tall as it is, with fans at both ends.
     fn tower(sides: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let mut v = vec![DVec3::ZERO, DVec3::Y * 4.0];
         let mut t = vec![];
@@ -451,7 +453,7 @@ pub(crate) mod tests {
         // A cube in a cube: twice around.
         faces.extend(cube().1.iter().map(|t| t.map(|i| i + 8)));
         two.extend(cube().0.iter().map(|v| *v * 0.5 + 0.25));
-        // The ring at the lower end is a point but for rounding, which is a hole.
+        // The ring at the lower end is a point except for rounding, which is a hole.
         let (mut ball, sectors) = sphere(12, 16);
         ball.iter_mut().filter(|p| p.y < -1.0 + 1e-12).for_each(|p| *p = DVec3::NEG_Y);
         let mut s = base::Seed::new(5).stream(base::Draw::Test);
@@ -497,7 +499,7 @@ pub(crate) mod tests {
         for _ in 0..2000 {
             let p = DVec3::new(s.range(-1.2, 1.2), s.range(-1.2, 1.2), s.range(-1.2, 1.2));
             let r = p.length();
-            // Between the ball inscribed in the mesh and the ball around it nothing is promised.
+            // Between the ball inscribed in the mesh and the ball around it nothing is guaranteed.
             if !(0.98..=1.0).contains(&r) {
                 assert_eq!(solid.inside(p), r < 0.99, "{p}");
                 let (q, _) = solid.nearest(p);
@@ -535,7 +537,7 @@ pub(crate) mod tests {
         for (vertices, indices) in [cube(), sphere(9, 14)] {
             let solid = Solid::new(&vertices, &indices).expect("sound");
             for round in 0..400 {
-                // Now and then in the middle, where many triangles are equally near.
+                // Occasionally in the centre, where many triangles are equally near.
                 let wide = if round % 5 == 0 { 0.0 } else { 2.0 };
                 let p = DVec3::new(s.range(-wide, wide), s.range(-wide, wide), s.range(-wide, wide));
                 let all = solid.triangles.iter().map(|t| (closest_on_triangle(t, p), area(t).normalize()));

@@ -1,4 +1,4 @@
-//! What a user asks of a tree: a TOML file, or the panels of the Studio.
+//! The user's settings of a tree: a TOML file, or the panels of the Studio.
 
 use base::{Budget, Counted};
 use glam::DVec3;
@@ -10,7 +10,7 @@ use crate::{
     Light, Look, Obstacle, SelfOrganizingSpec, VariationSpec, WoodSpec,
 };
 
-/// How a tree grows.
+/// Method of growth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -30,7 +30,7 @@ pub enum Method {
         #[serde(default)]
         steps: ColonizeSpec,
     },
-    /// Space colonisation of points that are given instead of scattered.
+    /// Space colonisation of given points instead of scattered ones.
     Points {
         /// Attraction points, metres; not relative to a root.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
@@ -43,11 +43,11 @@ pub enum Method {
     Competition(CompetitionSpec),
     /// Buds that compete for light (Palubicki 2009).
     SelfOrganizing(SelfOrganizingSpec),
-    /// Buds with markers of their own that keep away from others' and follow strokes of a brush (the VR paper).
+    /// Buds with their own markers that keep away from others' and follow strokes of a brush (the VR paper).
     Guided(GuidedSpec),
     /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
     Lsystem {
-        /// Axiom and rules, one a line.
+        /// Axiom and rules, one per line.
         rules: String,
         /// Most modules of all trees, 1 to 100 million.
         #[schemars(range(min = 1, max = 100_000_000))]
@@ -55,7 +55,7 @@ pub enum Method {
     },
 }
 
-/// A kind of tree, where it stands and how it looks. Metres, degrees, +Y up; saved as TOML.
+/// A kind of tree, with its site and appearance. Metres, degrees, +Y up; saved as TOML.
 ///
 /// Every number's unit (`x-unit`), range and default are in its JSON Schema ([`spec::Spec::schema`]).
 ///
@@ -67,36 +67,36 @@ pub enum Method {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TreeSpec {
-    /// For files and reports.
+    /// Name in files and reports.
     pub name: String,
     /// Scientific name; may be empty.
     pub species: String,
-    /// One line about it.
+    /// Description in one line.
     pub about: String,
-    /// Where trees of this kind stand, metres; they compete. Default one at the origin.
+    /// Positions of trees of this kind, metres; they compete. Default one at the origin.
     #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
     pub roots: Vec<DVec3>,
-    /// What they grow around; meshes may be named by `file`, in metres, +Y up. Default nothing.
+    /// Obstacles that they grow around; meshes may be named by `file`, in metres, +Y up. Default none.
     pub obstacles: Vec<Obstacle>,
     /// Distance that bark keeps from obstacles where there is room, metres, 0 to 1e6, default 0.05; leaves may touch.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
     pub clearance_m: f64,
-    /// The trees as they were at this age, in years of [`years`](Self::years); where that is not given, after so many
-    /// rounds, years (self-organising) or rewriting steps (L-systems). Default none: to the end.
+    /// Age at which the trees are shown, in years of [`years`](Self::years); without those, in rounds, years
+    /// (self-organising) or rewriting steps (L-systems). Default none: to the end.
     pub age: Option<u32>,
-    /// How old the tree is that the method grows, years, 1 to 5000. Younger ages are then on the path of one life, with
-    /// the same branches, whatever the method. Self-organising trees have years of their own. Default none.
+    /// Age of the tree that the method grows, years, 1 to 5000. Younger ages then follow one life, with the same
+    /// branches, for every method. Self-organising trees have years of their own. Default none.
     #[schemars(range(min = 1, max = 5000), extend("x-unit" = "a"))]
     pub years: Option<u32>,
-    /// How trees of this kind differ from seed to seed. Default not at all in size and stance.
+    /// Variation of trees of this kind from seed to seed. Default none in size and stance.
     pub variation: VariationSpec,
-    /// How they grow.
+    /// Method of growth.
     pub method: Method,
-    /// How skeletons become wood.
+    /// Conversion of skeletons to wood.
     pub wood: WoodSpec,
-    /// How leaves stand, and how many fall.
+    /// Arrangement of leaves, and their loss.
     pub leaves: FoliageSpec,
-    /// No leaves at all: a dead or winter tree. Default false.
+    /// Whether there are no leaves at all: a dead or winter tree. Default false.
     pub bare: bool,
     /// The form of a leaf.
     pub blade: BladeSpec,
@@ -134,7 +134,7 @@ impl Default for TreeSpec {
 impl TreeSpec {
     /// Whether both grow to the same wood and leaves: notes, colours, flowers and the form of a blade may differ.
     pub fn grows_like(&self, other: &Self) -> bool {
-        // Written out, so that a new field is thought of here.
+        // Written out, so that a new field is not forgotten here.
         let Self {
             name,
             species: _,
@@ -159,7 +159,7 @@ impl TreeSpec {
             && (years, variation) == (&other.years, &other.variation)
     }
 
-    /// The last age at which the tree still changes, where it is known before it grows: its years.
+    /// Returns the last age at which the tree still changes, if it is known before it grows: its years.
     pub fn end_of_life(&self) -> Option<u32> {
         match &self.method {
             Method::SelfOrganizing(s) => Some(s.years),
@@ -167,7 +167,7 @@ impl TreeSpec {
         }
     }
 
-    /// Fails if an age is asked for beyond `end`.
+    /// Fails if an age beyond `end` is requested.
     ///
     /// # Errors
     /// [`GrowthError::BeyondLife`].
@@ -181,8 +181,9 @@ impl TreeSpec {
         }
     }
 
-    /// Fails if a number is out of its range, if the age lies beyond the years of the tree, or if meshes, point clouds and roots are more than the budget allows.
-    /// [`crate::grow`] asks first; ask yourself before you prepare parts of it.
+    /// Fails if a number is out of its range, if the age lies beyond the years of the tree, or if meshes, point clouds
+    /// and roots are more than the budget allows. [`crate::grow`] calls this first; call it yourself before you prepare
+    /// parts of the spec.
     ///
     /// # Errors
     /// [`GrowthError::Range`], [`GrowthError::BeyondLife`], [`GrowthError::OverBudget`].

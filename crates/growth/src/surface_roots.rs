@@ -2,8 +2,8 @@
 //!
 //! `Plant of wood + SurfaceRootSpec -> Plant with axes of roots`
 //!
-//! A tree has 4 to 11 main ones (Perry, Journal of Arboriculture 8, 1982), which swell where they join the stem and lose most
-//! of their thickness near it, in the zone of rapid taper (Wilson, Harvard Forest Paper 11, 1964).
+//! A tree has 4 to 11 main ones (Perry, Journal of Arboriculture 8, 1982), which swell where they join the stem and
+//! lose most of their thickness near it, in the zone of rapid taper (Wilson, Harvard Forest Paper 11, 1964).
 
 use base::ops::{self, TAU};
 use base::{Draw, Seed};
@@ -13,36 +13,38 @@ use plant::{AxisKind, NodeId, Plant};
 use crate::wood::SurfaceRootSpec;
 use crate::{Obstacles, WoodSpec};
 
-/// The key under which a seed draws them.
+/// Key under which a seed draws surface roots.
 const ROOTS: u64 = 0x0072_6f6f_7473;
-/// Stems of this radius, metres, have none yet, and those of that radius have them whole.
+/// Stem radii, metres, from which they appear, and from which they are complete.
 const FROM_M: [f64; 2] = [0.02, 0.12];
-/// Nodes of a root beyond the stem's middle.
+/// Nodes of a root beyond the stem's centre.
 const STEPS: u32 = 16;
-/// Cross-section of all roots where they leave the stem, over that of the stem's foot: they swell where they join.
+/// Cross-section of all roots at the stem, relative to that of the stem's foot: they swell where they join.
 const COLLAR: f64 = 9.0;
-/// The share of its thickness that a root loses in the zone of rapid taper, and how long that is, as a share of its length.
+/// Share of its thickness that a root loses in the zone of rapid taper.
 const TAPER: f64 = 0.62;
+/// Length of that zone, as a share of the root's length.
 const ZONE: f64 = 0.3;
-/// How far from the middle of the stem it leaves it, in radii of the foot.
+/// Distance from the centre of the stem at which a root leaves it, in radii of the foot.
 const WITHIN: f64 = 1.4;
-/// How high the middle of a root lies above the ground where it leaves the stem, in its own radius there.
+/// Height of the centre of a root above the ground where it leaves the stem, in its own radius there.
 const RAISED: f64 = 0.45;
-/// How fast it comes down: the power of what is left of its length.
+/// Exponent of the remaining share of its length that gives its height.
 const FALL: f64 = 2.0;
-/// How deep the end lies in the ground, in its own radius: out of sight. It sinks from the first share of its length on, so that
-/// it narrows by what the ground covers and not to a spike.
+/// Depth of the end in the ground, in its own radius: out of sight.
 const SUNK: f64 = 1.2;
+/// Share of its length from which it sinks, so that it narrows by being covered and not to a spike.
 const SINKS: f64 = 0.1;
-/// The most that a root turns aside between two nodes, radians, and how much of a turn goes on at the next one.
+/// Largest turn of a root between two nodes, radians.
 const WANDER: f64 = 0.25;
+/// Share of a turn that continues at the next node.
 const GOES_ON: f64 = 0.3;
-/// The share of roots that fork.
+/// Share of roots that fork.
 const FORKS: f64 = 0.5;
 
-/// Adds roots to every stem that stands on the ground. One that an obstacle stands on is left out.
+/// Adds roots to every stem that stands on the ground. A root that meets an obstacle is left out.
 ///
-/// They draw nothing from the shoot and count for none of its measures ([`AxisKind::Root`]).
+/// They draw nothing from the shoot and do not count in its measures ([`AxisKind::Root`]).
 pub(crate) fn add_surface_roots(plant: &mut Plant, wood: &WoodSpec, obstacles: &Obstacles, seed: Seed) {
     let spec = &wood.surface_roots;
     if spec.count == 0 {
@@ -69,27 +71,27 @@ pub(crate) fn add_surface_roots(plant: &mut Plant, wood: &WoodSpec, obstacles: &
     }
 }
 
-/// What the roots of one stem share.
+/// Common data of the roots of one stem.
 struct Roots<'a> {
     spec: &'a SurfaceRootSpec,
-    /// Of the stem's foot, metres.
+    /// Radius of the stem's foot, metres.
     radius: f64,
-    /// How much of them a stem so thin has, 0 to 1.
+    /// Size of the roots of a stem of this radius relative to complete ones, 0 to 1.
     grown: f64,
-    /// Its height, metres.
+    /// Height of the ground, metres.
     ground: f64,
     obstacles: &'a Obstacles,
 }
 
 impl Roots<'_> {
-    /// A root that leaves at a share of the way round, and what forks from it.
+    /// Adds a root that leaves at a share of the circumference, and its forks.
     fn add(&self, plant: &mut Plant, foot: NodeId, share: f64, seed: Seed) {
         let mut draw = seed.stream(Draw::Habit);
         let turn = TAU * (share + 0.7 * (draw.uniform() - 0.5) / f64::from(self.spec.count));
         let weight = 0.6 + 0.8 * draw.uniform();
         let thick = self.grown * self.radius * (COLLAR * weight / f64::from(self.spec.count).max(4.0)).sqrt();
         let beyond = (self.spec.reach - WITHIN) * self.grown * (0.6 + 0.8 * draw.uniform());
-        // Within the stem, which is wider on the ground, nothing shows.
+        // Nothing shows within the stem, which is wider at the ground.
         let within = WITHIN * self.radius;
         let length = within + self.radius * beyond;
         let lift = RAISED * thick;
@@ -105,8 +107,8 @@ impl Roots<'_> {
         }
     }
 
-    /// One course of a length, thickness and height where it begins, of which a first share shows nothing: its nodes, or none
-    /// where an obstacle stands.
+    /// Returns the nodes of one course of a length, with thickness and height at its start, of which a first share is
+    /// hidden; `None` if an obstacle stands there.
     fn run(
         &self,
         plant: &mut Plant,
@@ -154,7 +156,7 @@ mod tests {
     use super::*;
     use crate::Obstacle;
 
-    /// A stem of 6 m, so thick at its foot, that stands a metre up.
+    /// Makes a stem of 6 m with this radius at its foot, standing one metre up.
     fn pole(radius: f64) -> Plant {
         let mut plant = Plant::default();
         let line: Vec<DVec3> = (1..=7).map(|y| DVec3::Y * f64::from(y)).collect();
@@ -215,7 +217,7 @@ mod tests {
             assert!(longest(&thin) < 9.0 * radius, "{radius}: {}", longest(&thin));
             assert!(thin.nodes.position.iter().all(|p| p.y > 0.8 && p.y <= 7.0), "{radius}");
         }
-        // A thinner stem has shorter ones, also beside its own size.
+        // A thinner stem has shorter ones, also relative to its own size.
         let (thin, thick) = (rooted(0.05, &Obstacles::none(), 1), rooted(0.2, &Obstacles::none(), 1));
         assert!(!is_bare(&thin) && longest(&thin) / 0.05 < longest(&thick) / 0.2);
         let wall = Obstacle::Box { min: DVec3::new(0.4, 0.0, -9.0), max: DVec3::new(9.0, 3.0, 9.0) };

@@ -1,4 +1,4 @@
-//! The whole way from a spec to a plant.
+//! The whole process from a spec to a plant.
 //!
 //! `TreeSpec -> Skeleton (any method) -> wood -> leaves -> Plant`
 
@@ -21,70 +21,71 @@ use crate::{
     add_leaves, grow_lsystem, guide, self_organize,
 };
 
-/// The key under which a seed draws the fates of limbs.
+/// Key under which a seed draws the fates of limbs.
 const FATE: u64 = 0x0066_6174_6573;
 
-/// The key under which a seed draws the flowers that rules set.
+/// Key under which a seed draws the flowers that rules set.
 const FLOWERS: u64 = 0x0066_6c6f_7765_7273;
 
-/// The shares of the work that are done, for people who wait, when it is wood, and when it has leaves; meshes are the
-/// rest. As of an oak.
+/// Share of the work that is done, for people who wait, when the wood is complete. Measured on an oak.
 const WOODY: f64 = 0.45;
+/// Share of the work that is done when the leaves are complete; meshes are the rest.
 const LEAFY: f64 = 0.6;
 
-/// What growth itself counted.
+/// Counts of growth itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GrowthTally {
-    /// Attraction points or markers, of all cycles; 0 for rules and light.
+    /// Number of attraction points or markers, of all cycles; 0 for rules and light.
     pub attractors: usize,
-    /// Of these, consumed.
+    /// Number of these that were consumed.
     pub consumed: usize,
-    /// Of these, neither consumed nor lying in obstacles: no joint came near them.
+    /// Number of these that were neither consumed nor in obstacles: no joint came near them.
     pub unreachable: usize,
-    /// Years of a tree that has [`TreeSpec::years`]; else rounds, years or rewriting steps.
+    /// Years of a tree that has [`TreeSpec::years`]; otherwise rounds, years or rewriting steps.
     pub iterations: u32,
     /// Life cycles of Yang et al. (2019); 1 for methods without.
     pub cycles: u32,
 }
 
-/// A grown plant and what it was made of.
+/// A grown plant with its origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grown {
     /// The plant: `plant.validate()` finds nothing wrong with it.
     pub plant: Plant,
     /// The skeleton under it: for pruning, ages and measures.
     pub skeleton: Skeleton,
-    /// What growth counted.
+    /// Counts of growth.
     pub tally: GrowthTally,
     /// Leaves placed, fallen and kept.
     pub leaves: LeafCount,
-    /// Where rules set flowers, which are no organs yet: whoever dresses the plant makes them.
+    /// Positions of flowers that rules set; these are not organs yet: a later stage makes them.
     pub flowers: Vec<FlowerPlace>,
 }
 
-/// A blade of needles is a shoot: of a young tree it is at most this share of its size, and stands closer by as much.
+/// Longest blade of needles, which is a shoot, relative to the size of a young tree; shoots stand closer by the same
+/// factor.
 const LONGEST_SHOOT: f64 = 0.4;
 
-/// Where a flower stands.
+/// Position of a flower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowerPlace {
-    /// What bears it.
+    /// Node that bears it.
     pub bearer: NodeId,
-    /// The foot of its stalk; it looks along.
+    /// Frame at the foot of its stalk; the flower faces along it.
     pub frame: Frame,
     /// Relative size, 0.01 to 100.
     pub scale: f64,
-    /// For its random choices.
+    /// Key for its random choices.
     pub key: u64,
 }
 
 /// Grows trees of any method and dresses them with leaves of the given blade ([`crate::FoliageSpec::blade`] if none).
 ///
 /// Guaranteed: the same plant for the same spec and seed, on every platform and any thread count; it ends; a clean
-/// `validate()`. Books its time under `grow`, `wood` and `leaves`, and tells the run's token how far it is.
+/// `validate()`. Books its time under `grow`, `wood` and `leaves`, and reports its progress to the run's token.
 ///
 /// # Errors
-/// [`GrowthError`]: whatever is wrong with the spec, or cancelled.
+/// [`GrowthError`]: any fault of the spec, or cancelled.
 ///
 /// ```
 /// use base::{Report, Run, Seed};
@@ -107,7 +108,7 @@ pub fn grow(
     let started = run.clock.now_ms();
     let mut wood_spec = spec.wood.clone();
     if let Method::SelfOrganizing(s) = &spec.method {
-        // One exponent and one tip for the wood that growth kept account of.
+        // One exponent and one tip for the wood that growth computed itself.
         (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
     }
     let mut thick = differ(spec, &wood_spec, &obstacles, seed, &mut bones)?;
@@ -118,7 +119,7 @@ pub fn grow(
         spec.check_age(bones.skeleton.age())?;
     }
     let slim = age(spec, &wood_spec, &mut bones);
-    // One number for all, or one for each.
+    // One number for all, or one for each tree.
     thick.resize(thick.len().max(slim.len()), thick.first().copied().unwrap_or(1.0));
     thick.iter_mut().zip(slim).for_each(|(thick, slim)| *thick *= slim);
     strip_twigs(&wood_spec, &mut bones);
@@ -149,7 +150,7 @@ pub fn grow(
         let places: Vec<(NodeId, LeafMark)> =
             leaf_marks.filter_map(|m| Some((wood.node_of_joint[m.joint.index()]?, *m))).collect();
         let blade = blade.unwrap_or_else(|| leaf.blade());
-        // Shoots that are thicker by a factor bear leaves where they are thicker by that.
+        // Shoots that are thicker by a factor bear leaves up to a radius that is larger by the same factor.
         let mean = thick.iter().sum::<f64>() / thick.len().max(1) as f64;
         let mut leaf = FoliageSpec { max_radius_m: (leaf.max_radius_m * mean).min(100.0), ..leaf.clone() };
         if life < 1.0 && blade.needles.is_some() && places.is_empty() {
@@ -168,7 +169,7 @@ pub fn grow(
     Ok(Grown { plant, skeleton, tally, leaves, flowers })
 }
 
-/// The flowers among the marks that rules set.
+/// Returns the flowers among the marks that rules set.
 fn flower_places(
     plant: &Plant,
     marks: &[LeafMark],
@@ -184,8 +185,8 @@ fn flower_places(
     (0..).zip(marks).filter_map(place).collect()
 }
 
-/// Makes the trees differ whose methods do not draw up a crown of their own size, and takes the limbs that are lost;
-/// what the radii of each tree are multiplied by.
+/// Applies the variation of trees whose methods do not draw a crown of their own size, and removes lost limbs; returns
+/// the factor on the radii of each tree.
 fn differ(
     spec: &TreeSpec,
     wood: &WoodSpec,
@@ -219,10 +220,10 @@ fn differ(
     Ok(habits.iter().map(factor).collect())
 }
 
-/// Limbs of a whole tree that are dead have died after this share of its life, each at its own time.
+/// Share of a tree's life before which no limb has died; after it, each dead limb has its own time.
 const LIMBS_LIVE: f64 = 0.4;
 
-/// Limbs that are lost go; those that are dead at a share of the tree's life are marked.
+/// Removes lost limbs; marks those that are dead at a share of the tree's life.
 fn take_limbs(variation: &VariationSpec, wood: &WoodSpec, life: f64, seed: Seed, bones: &mut Bones) {
     if variation.lost <= 0.0 && variation.dead <= 0.0 {
         return;
@@ -242,7 +243,7 @@ fn take_limbs(variation: &VariationSpec, wood: &WoodSpec, life: f64, seed: Seed,
     bones.keep(|j| !lost[j]);
 }
 
-/// The first joints of branches that leave a trunk and have between a 200th and a sixth of its wood.
+/// Returns the first joints of branches that leave a trunk and have between a 200th and a sixth of its wood.
 fn limbs(skeleton: &Skeleton, wood: &WoodSpec) -> Vec<usize> {
     let main = main_children(skeleton, &radii(skeleton, wood));
     let pipes = pipes(skeleton, wood.internode_share);
@@ -259,11 +260,11 @@ fn limbs(skeleton: &Skeleton, wood: &WoodSpec) -> Vec<usize> {
     limbs
 }
 
-/// The tree as it was at its age; by how much each one's wood is thinner than its pipes ask for.
+/// Reduces the tree to its age; returns the factor on the thickness of each tree's wood relative to its pipes.
 fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) -> Vec<f64> {
     let Some(age) = spec.age else { return Vec::new() };
     match (&spec.method, spec.years) {
-        // Light and rules without years were followed so far and no further.
+        // Light and rules without years were computed only up to this age.
         _ if bones.aged => {}
         (Method::SelfOrganizing(_), _) | (Method::Lsystem { .. }, None) => {}
         (_, Some(years)) if age < years => {
@@ -289,7 +290,7 @@ fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) -> Vec<f64> {
     Vec::new()
 }
 
-/// Takes the fine twigs of dead limbs, which the wind breaks first; the rest stays as thick as it was.
+/// Removes the fine twigs of dead limbs, which the wind breaks first; the rest keeps its thickness.
 fn strip_twigs(wood: &WoodSpec, bones: &mut Bones) {
     if !bones.dead.iter().any(|d| *d) {
         return;
@@ -302,7 +303,7 @@ fn strip_twigs(wood: &WoodSpec, bones: &mut Bones) {
     bones.keep(|j| !dead[j] || pipes[j] >= 4.0);
 }
 
-/// Takes the leaves of dead limbs and of props; how many.
+/// Removes the leaves of dead limbs and of props; returns their number.
 fn strip_leaves(plant: &mut Plant, node_of_joint: &[Option<NodeId>], leafless: &[bool]) -> usize {
     let mut bare = vec![false; plant.axes.len()];
     for node in node_of_joint.iter().zip(leafless).filter(|(_, d)| **d).filter_map(|(node, _)| *node) {
@@ -317,7 +318,7 @@ fn strip_leaves(plant: &mut Plant, node_of_joint: &[Option<NodeId>], leafless: &
     before - plant.organs.len()
 }
 
-/// Warns of trunks that stand beside their roots, because an obstacle has no room for them there.
+/// Warns of trunks that stand next to their roots, because an obstacle leaves no room for them there.
 fn tell_moved_feet(skeleton: &Skeleton, wood: &Wood, report: &mut Report) {
     let roots = skeleton.parent.iter().zip(&wood.node_of_joint).enumerate();
     for (j, node) in
@@ -337,7 +338,7 @@ fn tell_moved_feet(skeleton: &Skeleton, wood: &Wood, report: &mut Report) {
     }
 }
 
-/// Why a tree came out without wood.
+/// Explains why a tree has no wood.
 fn why_nothing(spec: &TreeSpec, tally: &GrowthTally) -> String {
     match &spec.method {
         _ if spec.age == Some(0) => "the tree is asked for at the age of 0; ask for 1 or more".into(),
@@ -364,7 +365,7 @@ fn why_nothing(spec: &TreeSpec, tally: &GrowthTally) -> String {
     }
 }
 
-/// Fails where points were given and none is used, with the distance that there is.
+/// Fails if points were given and none is used, with the actual distance.
 fn reached_some(
     roots: &[DVec3],
     points: &[DVec3],
@@ -391,13 +392,13 @@ fn reached_some(
     Err(GrowthError::Nothing { why })
 }
 
-/// A skeleton, the leaves that rules set, and what was counted.
+/// A skeleton, the leaves that rules set, and the counts.
 struct Bones {
     skeleton: Skeleton,
     marks: Vec<LeafMark>,
-    /// Which joints are of dead limbs; may be empty.
+    /// Whether each joint belongs to a dead limb; may be empty.
     dead: Vec<bool>,
-    /// Rules have followed its life up to its age.
+    /// Whether rules have followed its life up to its age.
     aged: bool,
     tally: GrowthTally,
 }
@@ -407,13 +408,13 @@ impl Bones {
         Self { skeleton, marks: Vec::new(), dead: Vec::new(), aged: false, tally }
     }
 
-    /// Keeps the joints for which `stays` holds and what grows on them, with what they bear.
+    /// Keeps the joints for which `stays` holds and their descendants, with all that they bear.
     fn keep(&mut self, stays: impl Fn(usize) -> bool) {
         let (skeleton, ids) = self.skeleton.keep_mapped(stays);
         self.become_of(skeleton, &ids);
     }
 
-    /// Takes the place of its skeleton; `ids`: where its joints are there.
+    /// Replaces its skeleton; `ids`: the new handles of its joints.
     fn become_of(&mut self, skeleton: Skeleton, ids: &[Option<JointId>]) {
         self.skeleton = skeleton;
         let marks = self.marks.iter();
@@ -422,7 +423,7 @@ impl Bones {
         self.dead = self.dead.iter().zip(ids).filter_map(kept).collect();
     }
 
-    /// What lies in obstacles, or behind one.
+    /// Removes joints in obstacles, or behind one.
     fn cut_off(&mut self, obstacles: &Obstacles) {
         let s = self.skeleton.clone();
         self.keep(|j| {
@@ -445,7 +446,7 @@ impl Bones {
     }
 }
 
-/// The skeleton by whichever method.
+/// Makes the skeleton by the method of the spec.
 fn bones(
     spec: &TreeSpec,
     obstacles: &Obstacles,
@@ -513,7 +514,8 @@ fn bones(
             if spec.years.is_none() {
                 spec.check_age(system.steps)?;
             }
-            // Of a tree with years, all steps make the whole, which is younger later on, unless the rules follow growth.
+            // For a tree with years, all steps make the whole, which is made younger later, unless the rules follow
+            // growth.
             let last = match (spec.age, spec.years) {
                 (Some(age), Some(years)) if system.ages == Ages::Steps => {
                     Some((system.steps * age.min(years)).div_ceil(years.max(1)))
@@ -646,7 +648,7 @@ mod tests {
         let (top, tip) = of("ages = steps", 20);
         assert!((top - 2.0).abs() < 1e-9 && (tip - 0.2).abs() < 1e-9, "{top} {tip}");
         assert!((of("ages = steps", 80).0 - 8.0).abs() < 1e-9);
-        // Without it a quarter of the life is what the law of growth says.
+        // Without it a quarter of the life has the height given by the law of growth.
         assert!((of("", 20).0 / 8.0 - grown_by(0.25, 80)).abs() < 1e-9);
     }
 
@@ -662,10 +664,10 @@ mod tests {
             tree(&spec).plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max)
         };
         assert!((of("ages = rules", None) - 10.0).abs() < 1e-9);
-        // Half a life: six pieces of six tenths, and nothing is grown back.
+        // Half a life: six pieces of six tenths, and nothing is scaled back.
         assert!((of("ages = rules", Some(40)) - 3.6).abs() < 1e-9);
         assert!((of("ages = rules", Some(80)) - 10.0).abs() < 1e-9, "as old as it gets");
-        // Whoever has a number of that name keeps it.
+        // A user's constant of that name takes precedence.
         assert!((of("let life = 1", None) - 10.0).abs() < 1e-9);
         assert!((of("let life = 0.5", None) - 3.6).abs() < 1e-9);
     }

@@ -1,4 +1,4 @@
-//! Steady pulls on growing tips.
+//! Constant influences on growing tips.
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{GrowthError, usable};
 
-/// A pull in one direction: light from above, weight downwards, wind.
+/// An influence in one direction: light from above, weight downwards, wind.
 ///
 /// ```
 /// use glam::DVec3;
@@ -18,10 +18,10 @@ use crate::error::{GrowthError, usable};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tropism {
-    /// Where to; any length above 0.
+    /// Direction of growth; any length above 0.
     #[schemars(with = "[f64; 3]")]
     pub direction: DVec3,
-    /// Relative to the pull of free space (which is 1), -10 to 10.
+    /// Strength relative to the pull of free space (which is 1), -10 to 10.
     #[schemars(range(min = -10.0, max = 10.0))]
     pub strength: f64,
 }
@@ -29,10 +29,10 @@ pub struct Tropism {
 spec::schemas!(Tropism => crate::TreeSpec, "/$defs/Tropism");
 
 impl Tropism {
-    /// A gentle pull to the light.
+    /// A gentle pull towards the light.
     pub const UPWARDS: Self = Self { direction: DVec3::Y, strength: 0.2 };
 
-    /// All pulls together.
+    /// Returns the sum of all influences.
     ///
     /// # Errors
     /// [`GrowthError::Field`] for a direction without length, [`GrowthError::Range`] for a strength out of range.

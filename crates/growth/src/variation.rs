@@ -1,14 +1,14 @@
-//! How trees of one kind differ in a wood.
+//! Variation between trees of one kind in a wood.
 //!
-//! `VariationSpec + seed of a root -> Habit -> places, girth, forks, limbs`
+//! `VariationSpec + seed of a root -> Habit -> positions, girth, forks, limbs`
 
 use base::{Draw, Seed, ops};
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How far trees of this kind differ from seed to seed: in a wood, not on a drawing board. All default to 0: every
-/// seed has the same size and stands upright.
+/// Variation of trees of this kind from seed to seed: in a wood, not on a drawing board. All default to 0: every seed
+/// has the same size and stands upright.
 ///
 /// Lengths that scale are those of wood and crown; leaves keep the size of their species. Each root draws for itself.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -17,25 +17,25 @@ pub struct VariationSpec {
     /// Coefficient of variation of the height, 0 to 0.4, default 0; the crown grows with it.
     #[schemars(range(min = 0.0, max = 0.4))]
     pub height: f64,
-    /// Coefficient of variation of the crown's width beyond what follows from the height, 0 to 0.4, default 0.
+    /// Coefficient of variation of the crown's width in addition to that of the height, 0 to 0.4, default 0.
     #[schemars(range(min = 0.0, max = 0.4))]
     pub width: f64,
-    /// Coefficient of variation of the thickness of wood beyond what follows from the crown, 0 to 0.4, default 0.
+    /// Coefficient of variation of the thickness of wood in addition to that of the crown, 0 to 0.4, default 0.
     #[schemars(range(min = 0.0, max = 0.4))]
     pub girth: f64,
     /// Spread of the lean, degrees, 0 to 30, default 0: half of the trees lean more than 1.2 times this.
     #[schemars(range(min = 0.0, max = 30.0), extend("x-unit" = "deg"))]
     pub lean_deg: f64,
-    /// Spread of the share by which a crown reaches further to one side, 0 to 0.4, default 0.
+    /// Spread of the share by which a crown reaches farther to one side, 0 to 0.4, default 0.
     #[schemars(range(min = 0.0, max = 0.4))]
     pub asymmetry: f64,
-    /// Chance that the trunk forks, 0 to 1, default 0. Where the envelope is `limbs`; rules draw their own forks.
+    /// Probability that the trunk forks, 0 to 1, default 0. Used for the envelope `limbs`; rules draw their own forks.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub fork: f64,
-    /// Coefficient of variation of the number of limbs, 0 to 0.5, default 0. Where the envelope is `limbs`.
+    /// Coefficient of variation of the number of limbs, 0 to 0.5, default 0. Used for the envelope `limbs`.
     #[schemars(range(min = 0.0, max = 0.5))]
     pub limbs: f64,
-    /// Share of the limbs that storms or shade have taken whole, 0 to 0.5, default 0.
+    /// Share of the limbs that storms or shade have removed completely, 0 to 0.5, default 0.
     #[schemars(range(min = 0.0, max = 0.5))]
     pub lost: f64,
     /// Share of the limbs that are dead: without leaves and fine twigs, 0 to 0.9, default 0.
@@ -45,7 +45,7 @@ pub struct VariationSpec {
 
 spec::schemas!(VariationSpec => crate::TreeSpec, "/$defs/VariationSpec");
 
-/// The key under which a seed draws habits, so that nothing else that it draws changes.
+/// Key under which a seed draws habits, so that its other draws do not change.
 const HABIT: u64 = 0x0068_6162_6974;
 
 impl VariationSpec {
@@ -54,10 +54,10 @@ impl VariationSpec {
         *self == Self::default()
     }
 
-    /// What one tree drew.
+    /// Draws the habit of one tree.
     pub(crate) fn habit(&self, seed: Seed, root: u64) -> Habit {
         let own = seed.child(HABIT).child(root);
-        // Each number has a stream of its own: a preset that names one more keeps the others.
+        // Each number has a stream of its own: a preset that sets one more number keeps the others.
         let drawn = |k: u64| own.child(k).stream(Draw::Habit);
         let factor = |k: u64, cv: f64| 1.0 + cv * drawn(k).normal().clamp(-2.3, 2.3);
         let vector = |k: u64, spread: f64, most: f64| {
@@ -78,28 +78,28 @@ impl VariationSpec {
     }
 }
 
-/// What one tree drew. Places are relative to its root.
+/// Habit drawn for one tree. Positions are relative to its root.
 #[derive(Clone, Debug)]
 pub(crate) struct Habit {
     /// Factors on height and width.
     pub(crate) high: f64,
     pub(crate) wide: f64,
-    /// Factor on radii, beyond what follows from the crown.
+    /// Factor on radii, in addition to that of the crown.
     pub(crate) girth: f64,
     /// Metres aside for each metre up.
     lean: DVec2,
-    /// The crown reaches further to this side, by its length as a share.
+    /// Side to which the crown reaches farther; its length is the share.
     side: DVec2,
     /// Whether the trunk forks.
     pub(crate) forks: bool,
     /// Factor on the number of limbs.
     pub(crate) limbs: f64,
-    /// For what else this tree draws.
+    /// Seed of the tree's other draws.
     pub(crate) seed: Seed,
 }
 
 impl Habit {
-    /// How much more room the crown has.
+    /// Returns the factor on the room of the crown.
     pub(crate) fn volume(&self) -> f64 {
         self.high * self.wide * self.wide
     }
@@ -108,21 +108,21 @@ impl Habit {
         self.wide * (1.0 + self.side.dot(aside.normalize_or_zero()))
     }
 
-    /// Where a place of the tree as it is drawn up lies in this one.
+    /// Maps a point of the undeformed tree to this one.
     pub(crate) fn place(&self, p: DVec3) -> DVec3 {
         let (y, flat) = (p.y * self.high, DVec2::new(p.x, p.z));
         let q = flat * self.reach(flat) + self.lean * y;
         DVec3::new(q.x, y, q.y)
     }
 
-    /// The opposite of [`place`](Self::place).
+    /// Inverts [`place`](Self::place).
     pub(crate) fn back(&self, p: DVec3) -> DVec3 {
         let flat = DVec2::new(p.x, p.z) - self.lean * p.y;
         let q = flat / self.reach(flat);
         DVec3::new(q.x, p.y / self.high, q.y)
     }
 
-    /// A box that holds the places of all that lies in one.
+    /// Returns a box that contains the images of all points in a box.
     pub(crate) fn around(&self, lo: DVec3, hi: DVec3) -> (DVec3, DVec3) {
         let aside = self.side.length();
         let (least, most) = (self.wide * (1.0 - aside), self.wide * (1.0 + aside));

@@ -1,4 +1,4 @@
-//! Skeleton -> plant: axes with orders, smooth courses and radii.
+//! Converts a skeleton to a plant: axes with orders, smooth courses and radii.
 //!
 //! `Skeleton -> main child of each joint -> axes -> C1 Bezier -> pipe radii -> Plant`
 
@@ -13,43 +13,44 @@ use crate::beside::{Course, Foot, Room};
 use crate::error::within;
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 
-/// How a skeleton becomes wood.
+/// Conversion of a skeleton to wood.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WoodSpec {
-    /// Exponent t of `r^t = sum of r_i^t` (Yang et al. 2019, Eq 4), 1 to 4, default 2.4; trees are measured at 1.8 to 2.6.
+    /// Exponent t of `r^t = sum of r_i^t` (Yang et al. 2019, Eq 4), 1 to 4, default 2.4; trees are measured at 1.8 to
+    /// 2.6.
     #[schemars(range(min = 1.0, max = 4.0))]
     pub pipe_exponent: f64,
     /// Radius of a tip, metres, above 0, default 0.004.
     #[schemars(range(min = 1e-6, max = 10.0), extend("x-unit" = "m"))]
     pub tip_radius_m: f64,
-    /// What every internode adds to the pipes, as a share of a tip's, 0 to 1, default 0.05. It makes shoots taper
-    /// between forks; 0 is Eq 4 to the letter.
+    /// Contribution of every internode to the pipes, as a share of a tip's, 0 to 1, default 0.05. It makes shoots taper
+    /// between forks; 0 is Eq 4 exactly.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub internode_share: f64,
-    /// Radius at the foot of the thickest trunk when the tree is whole, metres: all radii, those of the tips and
-    /// [`FoliageSpec::max_radius_m`](crate::FoliageSpec::max_radius_m) too, are scaled to it, so that the pipe model
-    /// holds. Default none: as the pipe model has it.
+    /// Radius at the foot of the thickest trunk when the tree is complete, metres: all radii, including those of the
+    /// tips and [`FoliageSpec::max_radius_m`](crate::FoliageSpec::max_radius_m), are scaled to it, so that the pipe
+    /// model holds. Default none: that of the pipe model.
     #[schemars(range(min = 1e-6, max = 100.0), extend("x-unit" = "m"))]
     pub trunk_radius_m: Option<f64>,
-    /// How much thicker the bole is than what its crown asks for, a factor, 1 to 20, default 1: baobabs and bottle trees
-    /// store water there. Limbs are as thick as ever.
+    /// Factor on the thickness of the bole relative to that which its crown needs, 1 to 20, default 1: baobabs and
+    /// bottle trees store water there. Limbs are unchanged.
     #[schemars(range(min = 1.0, max = 20.0))]
     pub swell: f64,
     /// Roots that arch from the bole to the ground. Default none.
     pub props: PropSpec,
-    /// Roots that show around the foot of each stem. Default none.
+    /// Visible roots around the foot of each stem. Default none.
     pub surface_roots: SurfaceRootSpec,
-    /// What is left on stems of branches that they lost. Default none.
+    /// Remains of lost branches on stems. Default none.
     pub scars: ScarSpec,
     /// Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). Default true.
     pub smooth: bool,
-    /// How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at
+    /// Number of times that every joint is moved half-way to its parent (Runions 2007, step e), 0 to 10: angles at
     /// forks become acute and courses straighter; each time costs half an internode of size. Default 1.
     #[schemars(range(min = 0, max = 10))]
     pub relax: u32,
-    /// Joints that bear nothing are left out where this takes the course aside by less than this share of the radius,
-    /// 0 to 10, default 0.25.
+    /// Tolerance for leaving out joints that bear nothing: the displacement of the course as a share of the radius, 0
+    /// to 10, default 0.25.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub thin_out: f64,
 }
@@ -78,19 +79,20 @@ impl Default for WoodSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PropSpec {
-    /// How many leave the stem, 0 to 200, default 0.
+    /// Number of props that leave the stem, 0 to 200, default 0.
     #[schemars(range(min = 0, max = 200))]
     pub count: u32,
-    /// The height up to which they leave it when the tree is whole, metres, 0.01 to 50, default 1.5.
+    /// Height up to which they leave it when the tree is complete, metres, 0.01 to 50, default 1.5.
     #[schemars(range(min = 0.01, max = 50.0), extend("x-unit" = "m"))]
     pub rise_m: f64,
-    /// How far from the stem the highest come down, metres, 0.01 to 50, default 1.5; each by half more or less.
+    /// Distance from the stem at which the highest reach the ground, metres, 0.01 to 50, default 1.5; each varies by
+    /// half.
     #[schemars(range(min = 0.01, max = 50.0), extend("x-unit" = "m"))]
     pub reach_m: f64,
     /// Mean radius, metres, 0.001 to 5, default 0.025.
     #[schemars(range(min = 0.001, max = 5.0), extend("x-unit" = "m"))]
     pub radius_m: f64,
-    /// The chance that a further arch leaves one half-way down, 0 to 1, default 0.5.
+    /// Probability that a further arch leaves one half-way down, 0 to 1, default 0.5.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub fork: f64,
 }
@@ -103,16 +105,18 @@ impl Default for PropSpec {
     }
 }
 
-/// Roots that run along the ground from the foot of a stem, half sunk, until they are out of sight. They are as thick as the
-/// stem asks for, and taper quickly. Stems of less than 12 cm radius have smaller ones, those of less than 2 cm none.
+/// Roots that run along the ground from the foot of a stem, half sunk, until they are out of sight. Their thickness
+/// follows that of the stem, and they taper quickly. Stems of less than 12 cm radius have smaller ones, those of less
+/// than 2 cm none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SurfaceRootSpec {
-    /// How many leave each stem, 0 to 40, default 0; half of them fork. Trees have 4 to 11 main ones (Perry,
+    /// Number of roots of each stem, 0 to 40, default 0; half of them fork. Trees have 4 to 11 main ones (Perry,
     /// Journal of Arboriculture 8, 1982).
     #[schemars(range(min = 0, max = 40))]
     pub count: u32,
-    /// How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 5; each by two fifths more or less.
+    /// Distance from the centre of the stem up to which they show, in its radii at the foot, 1.5 to 40, default 5; each
+    /// varies by two fifths.
     #[schemars(range(min = 1.5, max = 40.0))]
     pub reach: f64,
 }
@@ -125,16 +129,16 @@ impl Default for SurfaceRootSpec {
     }
 }
 
-/// What is left on stems of branches that they lost: mean numbers, of which every seed has more or less. All lie about the
-/// stem below its crown and among its first limbs; a stem that is branched from the ground has few. Stems of 10 cm radius
-/// have all stubs and knots, those of 25 cm the rest too; those of 4 and 10 cm have none yet.
+/// Remains of lost branches on stems: mean numbers, which vary from seed to seed. All lie around the stem below its
+/// crown and among its first limbs; a stem that is branched from the ground has few. Stems of 10 cm radius have all
+/// stubs and knots, those of 25 cm the rest too; those of 4 and 10 cm have none yet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScarSpec {
-    /// Stubs of dead branches, by metre, 0 to 30, default 0.
+    /// Stubs of dead branches per metre, 0 to 30, default 0.
     #[schemars(range(min = 0.0, max = 30.0))]
     pub stubs: f64,
-    /// Knots, where the stem has grown around a stub, by metre, 0 to 30, default 0.
+    /// Knots, where the stem has grown around a stub, per metre, 0 to 30, default 0.
     #[schemars(range(min = 0.0, max = 30.0))]
     pub knots: f64,
     /// Burls, 0 to 50, default 0.
@@ -150,7 +154,7 @@ pub struct ScarSpec {
 
 spec::schemas!(ScarSpec => crate::TreeSpec, "/$defs/ScarSpec");
 
-/// A plant made of a skeleton.
+/// A plant made from a skeleton.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wood {
     /// Axes only; `validate()` finds nothing wrong with it.
@@ -159,14 +163,13 @@ pub struct Wood {
     pub node_of_joint: Vec<Option<NodeId>>,
 }
 
-/// Makes a plant of a skeleton.
+/// Makes a plant from a skeleton.
 ///
-/// The child with most wood above it, turned least, continues an axis; the others start axes of the next order.
-/// Radii follow the pipe model, except where the skeleton has its own (`radius_m` above 0). Guaranteed: a clean
-/// `validate()`; beside obstacles bark
-/// keeps their clearance where there is room (wood is moved aside by what it is thick, a foot included, and is thinner
-/// where it cannot be moved); an axis's key depends on where it starts and on its
-/// bearer's alone. Cost: n log n in joints at most.
+/// The child with most wood above it, turned least, continues an axis; the others start axes of the next order. Radii
+/// follow the pipe model, except where the skeleton has its own (`radius_m` above 0). Guaranteed: a clean `validate()`;
+/// next to obstacles bark keeps their clearance where there is room (wood is moved aside by its thickness, including
+/// that of a foot, and is thinner where it cannot be moved); an axis's key depends only on its start and on its
+/// bearer's key. Cost: n log n in joints at most.
 ///
 /// # Errors
 /// [`GrowthError::Range`], [`GrowthError::Cancelled`].
@@ -196,7 +199,7 @@ pub fn make_wood(
     make_wood_of(skeleton, spec, &[thick], obstacles, run)
 }
 
-/// What all radii are multiplied by, so that the thickest trunk is as thick as was asked for.
+/// Returns the factor on all radii with which the thickest trunk gets the thickness in the spec.
 ///
 /// # Errors
 /// [`GrowthError::Range`].
@@ -208,7 +211,7 @@ pub(crate) fn thickening(skeleton: &Skeleton, spec: &WoodSpec) -> Result<f64, Gr
     Ok(if thickest > spec.tip_radius_m * 1.0001 { wanted / thickest } else { 1.0 })
 }
 
-/// As [`make_wood`], with what the radii of each tree are multiplied by (one number for all, or one for each).
+/// As [`make_wood`], with the factors on the radii of each tree (one number for all, or one for each).
 pub(crate) fn make_wood_of(
     skeleton: &Skeleton,
     spec: &WoodSpec,
@@ -233,10 +236,10 @@ pub(crate) fn make_wood_of(
     Ok(wood)
 }
 
-/// Above the bole, the share of its length on which what it is swollen by fades out.
+/// Length above the bole on which its swelling fades out, as a share of the bole's.
 const SHOULDER: f64 = 0.5;
 
-/// Which joints lie on a trunk below its lowest limb.
+/// Returns for each joint whether it lies on a trunk below its lowest limb.
 pub(crate) fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
     let n = full.len();
     let mut above = vec![1_u32; n];
@@ -246,7 +249,7 @@ pub(crate) fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
         }
     }
     let mut on_bole = vec![false; n];
-    // By joint: what leaves it to the side.
+    // For each joint, the number of its lateral children.
     let mut aside = vec![0_u32; n];
     for (j, wood) in above.iter().enumerate() {
         if let Some(p) = full.parent[j].map(JointId::index).filter(|&p| main[p] != Some(JointId::new(j))) {
@@ -264,7 +267,7 @@ pub(crate) fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
     on_bole
 }
 
-/// Thickens boles by a factor: most in their lower half, and less and less above their lowest limb.
+/// Thickens boles by a factor: most in their lower half, and decreasingly above their lowest limb.
 fn swell(radius: &mut [f64], skeleton: &Skeleton, main: &[Option<JointId>], factor: f64) {
     let on_bole = boles(skeleton, main);
     for root in (0..skeleton.len()).filter(|&j| skeleton.parent[j].is_none()) {
@@ -286,7 +289,7 @@ fn swell(radius: &mut [f64], skeleton: &Skeleton, main: &[Option<JointId>], fact
     }
 }
 
-/// Eq 4 from the tips down; a radius that the skeleton brings along holds.
+/// Computes radii by Eq 4 from the tips down; given radii of the skeleton take precedence.
 pub(crate) fn radii(skeleton: &Skeleton, spec: &WoodSpec) -> Vec<f64> {
     let t = spec.pipe_exponent;
     let tip = ops::powf(spec.tip_radius_m, t);
@@ -297,7 +300,7 @@ pub(crate) fn radii(skeleton: &Skeleton, spec: &WoodSpec) -> Vec<f64> {
         .collect()
 }
 
-/// The pipes at each joint, in those of a tip, whatever radii the skeleton brings along.
+/// Returns the pipes at each joint, in units of a tip's, whatever radii the skeleton has.
 pub(crate) fn pipes(skeleton: &Skeleton, internode_share: f64) -> Vec<f64> {
     gathered(skeleton, 1.0, internode_share, |_| None)
 }
@@ -310,7 +313,7 @@ fn gathered(skeleton: &Skeleton, tip: f64, internode: f64, own: impl Fn(usize) -
         if let Some(own) = own(j) {
             pipes[j] = own;
         }
-        // The foot of a tree is as thick as what stands on it.
+        // The foot of a tree is as thick as the stem on it.
         if let Some(p) = skeleton.parent[j] {
             pipes[p.index()] += pipes[j];
         }
@@ -318,11 +321,11 @@ fn gathered(skeleton: &Skeleton, tip: f64, internode: f64, own: impl Fn(usize) -
     pipes
 }
 
-/// Moves joints half-way to the ones they grew from, unless that leads into an obstacle.
+/// Moves joints half-way to their parents, unless that leads into an obstacle.
 fn relax(skeleton: &Skeleton, times: u32, obstacles: &Obstacles) -> Skeleton {
     let mut relaxed = skeleton.clone();
     for _ in 0..times {
-        // Parents come first: from the end on, each still has its old place when its children look.
+        // Parents come first: going backwards, each still has its old position when its children read it.
         for j in (0..relaxed.len()).rev() {
             let Some(p) = relaxed.parent[j] else { continue };
             let middle = (relaxed.position[j] + relaxed.position[p.index()]) * 0.5;
@@ -334,7 +337,7 @@ fn relax(skeleton: &Skeleton, times: u32, obstacles: &Obstacles) -> Skeleton {
     relaxed
 }
 
-/// The child that continues each joint's axis.
+/// Returns the child that continues each joint's axis.
 pub(crate) fn main_children(skeleton: &Skeleton, radius: &[f64]) -> Vec<Option<JointId>> {
     let mut main: Vec<Option<JointId>> = vec![None; skeleton.len()];
     let mut best = vec![f64::NEG_INFINITY; skeleton.len()];
@@ -352,7 +355,7 @@ pub(crate) fn main_children(skeleton: &Skeleton, radius: &[f64]) -> Vec<Option<J
     main
 }
 
-/// One axis to be made: its first joint beyond the bearer, and where the bearer is.
+/// One axis to be made: its first joint beyond the bearer, and the position of the bearer.
 struct Start {
     joint: usize,
     key: u64,
@@ -384,7 +387,7 @@ fn axes(
     }
     let (mut chain, mut way, mut kept) = (Vec::new(), Course::default(), Vec::new());
     let room = Room::new(obstacles, skeleton.size(), spec.tip_radius_m);
-    // The most that wood on each node may measure: less where it was squeezed.
+    // Largest radius of wood on each node: smaller where it was squeezed.
     let mut caps: Vec<f64> = Vec::new();
     let mut next = 0;
     while next < starts.len() {
@@ -450,8 +453,8 @@ fn axes(
     Ok(Wood { plant, node_of_joint })
 }
 
-/// Positions along a chain of joints. Smooth: the middle of each Bezier piece, whose ends are the middles of the
-/// internodes and whose control point is the joint (Eq 3 with P0 = (M0 + M1) / 2, P1 = M1, P2 = (M1 + M2) / 2).
+/// Returns positions along a chain of joints. Smooth: the middle of each Bezier piece, whose ends are the middles of
+/// the internodes and whose control point is the joint (Eq 3 with P0 = (M0 + M1) / 2, P1 = M1, P2 = (M1 + M2) / 2).
 fn course(
     skeleton: &Skeleton,
     chain: &[usize],
@@ -466,7 +469,7 @@ fn course(
         let here = at(i);
         let inner = spec.smooth && i > 0 && i + 1 < chain.len();
         let middle = if inner { (at(i - 1) + here * 6.0 + at(i + 1)) / 8.0 } else { here };
-        // What was steered around a corner must not be smoothed into it.
+        // A course that was steered around a corner must not be smoothed into it.
         let open = obstacles.is_empty() || obstacles.free(middle);
         let point = if open { middle } else { here };
         way.add(point, radius[joint], Some(i), spec.thin_out * radius[joint]);
@@ -484,7 +487,7 @@ fn thin_out(way: &Course, bears: impl Fn(usize) -> bool, kept: &mut Vec<usize>) 
         let (a, b) = (points[last], points[i + 1]);
         let d = (b - a).normalize_or_zero();
         let aside = |p: DVec3| (p - a - d * (p - a).dot(d)).length();
-        // Eight at a time: a long straight trunk still gets a node now and then.
+        // At most eight at a time: a long straight trunk still gets some nodes.
         let straight = i - last < 8 && (last + 1..=i).all(|k| aside(points[k]) < way.aside[k]);
         let thins = (way.radii[i + 1] / way.radii[last.max(1)]) < 0.7;
         if bears(i) || !straight || thins {
@@ -580,7 +583,7 @@ mod tests {
             let spec = WoodSpec { smooth, relax, thin_out: 0.0, ..WoodSpec::default() };
             let p = make_wood(&s, &spec, &obstacles, &Run::plain()).expect("sound").plant;
             assert!(p.nodes.position.iter().all(|&q| obstacles.inside(q).is_none()));
-            // Beside the rock there are more nodes, which turn less.
+            // Next to the rock there are more nodes, which turn less.
             let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
             let axes = (0..p.axes.len()).map(plant::AxisId::new);
             let turns = axes.flat_map(|a| {
@@ -618,7 +621,7 @@ mod tests {
         let spec = WoodSpec { trunk_radius_m: Some(0.3), ..WoodSpec::default() };
         let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
         assert!((p.nodes.radius_m[0] - 0.3).abs() < 1e-9);
-        // The pipe model holds all the same: every radius is larger by one factor.
+        // The pipe model still holds: every radius is larger by one factor.
         let plain =
             make_wood(&s, &WoodSpec::default(), &Obstacles::none(), &Run::plain()).expect("sound").plant;
         let factor = 0.3 / plain.nodes.radius_m[0];

@@ -7,24 +7,25 @@ use serde::{Deserialize, Serialize};
 use crate::marks::{FullMarks, MARKS_A_ROW, MarksError};
 use crate::rays::{Rays, RaysError};
 
-/// One control ball moved and rescaled: the place of a mark and the thickness of the veins there.
+/// One control ball moved and rescaled: the position of a mark and the thickness of the veins there.
 ///
-/// Of an approximating or NURBS surface the marks are the control balls, so that the blade changes within two rows and two
-/// marks of it only; an interpolating one goes through the ball, and changes a little everywhere.
+/// For an approximating or NURBS surface the marks are the control balls, so that the blade changes only within two
+/// rows and two marks; an interpolating one passes through the ball, and changes slightly everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BallMove {
-    /// Row of marks from the tip down, from 1, or 0 for the tip; of chief veins the vein from the right margin, from 1.
+    /// Row of marks from the tip down, from 1, or 0 for the tip; for chief veins the vein from the right margin, from
+    /// 1.
     #[schemars(range(min = 0, max = 1000))]
     pub row: u32,
-    /// Mark of the row from the right margin, 1 to 7, of which 4 is on the midrib; of chief veins the mark from the base.
+    /// Mark of the row from the right margin, 1 to 7, where 4 is on the midrib; for chief veins the mark from the base.
     #[schemars(range(min = 1, max = 1000))]
     pub mark: u32,
-    /// How far it is moved: to the right as one looks at the upper side with the tip up, towards the tip, and off the upper
-    /// side; metres, -10 to 10.
+    /// Offset to the right as seen on the upper side with the tip up, towards the tip, and off the upper side; metres,
+    /// -10 to 10.
     #[schemars(inner(range(min = -10.0, max = 10.0)), extend("x-unit" = "m"))]
     pub by_m: [f64; 3],
-    /// The veins there are so many times as thick, 0.05 to 20, default 1.
+    /// Factor on the thickness of the veins there, 0.05 to 20, default 1.
     #[schemars(range(min = 0.05, max = 20.0))]
     pub thickness: f64,
 }
@@ -41,7 +42,7 @@ const MIDDLE: usize = MARKS_A_ROW / 2;
 struct Sides([DVec3; 3]);
 
 impl Sides {
-    /// `across`: from the left margin to the right one, anywhere.
+    /// Builds the frame. `across` points from the left margin to the right one and may have any length.
     fn new(root: DVec3, tip: DVec3, across: DVec3) -> Self {
         let forth = (tip - root).try_normalize().unwrap_or(DVec3::Y);
         let right = (across - forth * across.dot(forth)).try_normalize();
@@ -66,11 +67,11 @@ impl Sides {
     }
 }
 
-/// The marks with balls moved by hand, one after another. The margin goes with them.
+/// Applies moves of balls to marks, one after another. The margin follows.
 ///
 /// # Errors
-/// [`MarksError::NoBall`] for a ball that the leaf has not; what [`Marks::validate`](crate::Marks::validate) says of the moved
-/// ones.
+/// [`MarksError::NoBall`] for a ball that the leaf does not have; those of [`Marks::validate`](crate::Marks::validate)
+/// for the moved marks.
 pub(crate) fn moved(balls: &[BallMove], marks: &FullMarks) -> Result<FullMarks, MarksError> {
     let mut out = marks.clone();
     if balls.is_empty() {
@@ -99,10 +100,11 @@ pub(crate) fn moved(balls: &[BallMove], marks: &FullMarks) -> Result<FullMarks, 
     }
 }
 
-/// As [`moved`], of chief veins that start together. A ball at the base, which all veins share, is moved on all of them.
+/// As [`moved`], for chief veins that start together. A ball at the base, which all veins share, is moved on all of
+/// them.
 ///
 /// # Errors
-/// [`RaysError::NoBall`] for a ball that the leaf has not.
+/// [`RaysError::NoBall`] for a ball that the leaf does not have.
 pub(crate) fn moved_rays(balls: &[BallMove], rays: &Rays) -> Result<Rays, RaysError> {
     let mut out = rays.clone();
     let Some(sides) = Sides::of_rays(rays) else { return Ok(out) };
@@ -125,12 +127,12 @@ pub(crate) fn moved_rays(balls: &[BallMove], rays: &Rays) -> Result<Rays, RaysEr
     Ok(out)
 }
 
-/// The directions of [`BallMove::by_m`] on a leaf, unit vectors.
+/// Returns the directions of [`BallMove::by_m`] on a leaf, unit vectors.
 pub fn ball_sides(marks: &FullMarks) -> [DVec3; 3] {
     Sides::of_marks(marks).0
 }
 
-/// As [`ball_sides`], of chief veins.
+/// As [`ball_sides`], for chief veins.
 pub fn ball_sides_of_rays(rays: &Rays) -> [DVec3; 3] {
     Sides::of_rays(rays).map_or([DVec3::X, DVec3::Y, DVec3::Z], |sides| sides.0)
 }

@@ -31,26 +31,26 @@ use crate::spec::{LeafSpec, SurfaceKind, VeinParameters};
 pub struct Leaf {
     /// The blade.
     pub blade: SplineSurface,
-    /// The midrib, from root to tip.
+    /// The midrib, from the root to the tip.
     pub midrib: Vein,
     /// The side veins from the last row up, each from left to right.
     pub sides: Vec<Vein>,
-    /// The margin from the last row to the tip, left and right, as thick as it was measured.
+    /// The margin from the last row to the tip, left and right, with its measured thickness.
     pub margins: [Vein; 2],
     /// The parameter u of the midrib.
     pub middle: f64,
-    /// The margin, where it is not that of the surface.
+    /// The margin, if it differs from the edge of the surface.
     pub rim: Vec<RimPoint>,
 }
 
 impl Leaf {
-    /// Lays a blade and veins through or near marks.
+    /// Fits a blade and veins through or near marks.
     ///
     /// Cost: linear in the marks for interpolation.
     ///
     /// # Errors
-    /// [`SplineError`] for marks of which [`Marks::validate`](crate::Marks::validate) would complain, and for
-    /// more than 63 rows with [`SurfaceKind::Bezier`].
+    /// [`SplineError`] for marks that fail [`Marks::validate`](crate::Marks::validate), and for more than 63 rows with
+    /// [`SurfaceKind::Bezier`].
     pub fn new(marks: &FullMarks, spec: &LeafSpec) -> Result<Self, SplineError> {
         let grid = Grid::new(marks, spec);
         let n = MARKS_A_ROW;
@@ -99,7 +99,7 @@ impl Leaf {
         Ok(leaf)
     }
 
-    /// The leaf as a shape of a plant, where it was measured; its texture is the leaf laid flat.
+    /// Returns the leaf as a shape of a plant, in its measured place; its texture is the leaf laid flat.
     pub fn blade(&self) -> SplineBlade {
         let mut veins = vec![self.midrib.clone()];
         veins.extend_from_slice(&self.sides);
@@ -113,9 +113,9 @@ impl Leaf {
         }
     }
 
-    /// The farthest that any vein's centre line is from the place on the blade where it should lie, metres.
+    /// Returns the greatest distance of any vein's centre line from its place on the blade, metres.
     ///
-    /// At `steps` parameters a span. Rounding noise with [`VeinParameters::Shared`].
+    /// Measured at `steps` parameters per span. Rounding noise with [`VeinParameters::Shared`].
     pub fn vein_gap(&self, steps: usize) -> f64 {
         let mut gap: f64 = 0.0;
         for t in subdivided(&self.midrib.marks, steps) {
@@ -160,7 +160,8 @@ impl Grid {
         Self { rows, points, radii, midrib }
     }
 
-    /// 1 for the thinnest vein, `vein_weight` for the thickest, even between; the midrib's own in its column.
+    /// Returns weights from 1 for the thinnest vein to `vein_weight` for the thickest, linear between; the midrib's own
+    /// in its column.
     fn weights(&self, spec: &LeafSpec) -> Vec<f64> {
         let n = MARKS_A_ROW;
         let thick = |k: usize| if k % n == n / 2 { self.midrib[k / n] } else { self.radii[k] };
@@ -245,7 +246,7 @@ mod tests {
             Leaf::new(&full, &LeafSpec::default()).unwrap().blade().flat(6)
         };
         let plain = make(&marks);
-        // Bent round a cylinder across the midrib of radius 0.5.
+        // Bent around a cylinder of radius 0.5 across the midrib.
         let bend = |p: DVec3| {
             let (s, c) = base::ops::sin_cos(p.y / 0.5);
             DVec3::new(p.x, 0.5 * s, 0.5 * (c - 1.0))

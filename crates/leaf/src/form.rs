@@ -1,4 +1,4 @@
-//! A leaf of one midrib with pairs of side veins from a few numbers: `LeafForm -> Marks`.
+//! A leaf with one midrib and pairs of side veins, defined by a few numbers: `LeafForm -> Marks`.
 
 use base::ops;
 use glam::DVec3;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::marks::{MARKS_A_ROW, MIDRIB_SHARE, MarkRow, Marks};
 
-/// The form of a leaf with one midrib, where nothing was measured.
+/// The form of a leaf with one midrib, used if nothing was measured.
 ///
 /// ```
 /// let form: leaf::LeafForm = spec::from_toml("width = 0.3\nveins = 6").expect("a form");
@@ -22,7 +22,7 @@ pub struct LeafForm {
     /// Greatest width over length, 0.02 to 2, default 0.5.
     #[schemars(range(min = 0.02, max = 2.0))]
     pub width: f64,
-    /// Where it is widest: 0.1 near the base to 0.9 near the tip, default 0.4.
+    /// Position of the greatest width: 0.1 near the base to 0.9 near the tip, default 0.4.
     #[schemars(range(min = 0.1, max = 0.9))]
     pub widest: f64,
     /// Pairs of side veins, 2 to 30, default 8.
@@ -31,11 +31,11 @@ pub struct LeafForm {
     /// Angle between side veins and midrib, degrees, 15 to 85, default 50. At the base it is wider.
     #[schemars(range(min = 15.0, max = 85.0), extend("x-unit" = "deg"))]
     pub vein_angle_deg: f64,
-    /// How far the margin goes in between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes),
+    /// Depth of the margin between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes),
     /// default 0.
     #[schemars(range(min = 0.0, max = 0.8))]
     pub lobes: f64,
-    /// How far both halves are raised along the midrib, degrees, -60 to 60, default 10.
+    /// Angle by which both halves are raised along the midrib, degrees, -60 to 60, default 10.
     #[schemars(range(min = -60.0, max = 60.0), extend("x-unit" = "deg"))]
     pub fold_deg: f64,
 }
@@ -54,20 +54,20 @@ impl Default for LeafForm {
     }
 }
 
-/// Sum of the exponents of the outline: with less it is blunt, with more it ends in long points.
+/// Sum of the exponents of the outline: a smaller one makes it blunt, a larger one draws it out into long points.
 const POINTED: f64 = 1.5;
-/// The last pair of side veins leaves the midrib at this share of its length.
+/// Position of the last pair of side veins, as a share of the midrib's length.
 const LAST: f64 = 0.93;
-/// The lowest side veins leave the midrib at so much wider an angle, degrees, and up to this share of its length they do
-/// so less and less.
+/// Widening of the angle between the lowest side veins and the midrib, degrees.
 const BASE_WIDER: f64 = 30.0;
+/// Share of the midrib's length along which that widening decreases to nothing.
 const BASE: f64 = 0.3;
 
 impl LeafForm {
-    /// Its marks, as if they were measured: base at the origin, tip along +y, upper side towards +z.
+    /// Returns its marks, as if they were measured: base at the origin, tip along +y, upper side towards +z.
     ///
     /// Guaranteed for numbers within their ranges: [`Marks::validate`] finds no fault; left and right are alike; every
-    /// thickness is known, by the shares that are taken where none was measured. A lobed leaf has a thin pair of veins
+    /// thickness is known, by the shares that are assumed if none was measured. A lobed leaf has a thin pair of veins
     /// in each gap.
     pub fn marks(&self) -> Marks {
         let pairs = self.veins.clamp(2, 30);
@@ -83,7 +83,7 @@ impl LeafForm {
         Marks { rows, tip: DVec3::Y * self.length_m, tip_thickness, margin: Vec::new() }
     }
 
-    /// Half the width at a share of the length, metres.
+    /// Returns half the width at a share of the length, metres.
     fn half_width(&self, up: f64) -> f64 {
         let up = up.clamp(0.0, 1.0);
         let (low, high) = (POINTED * self.widest, POINTED * (1.0 - self.widest));
@@ -91,14 +91,14 @@ impl LeafForm {
         0.5 * self.width * self.length_m * curve(up) / curve(self.widest)
     }
 
-    /// The pair of side veins that leaves the midrib at a share of its length; `gap`: it ends between two lobes.
+    /// Makes the pair of side veins that leaves the midrib at a share of its length; `gap`: it ends between two lobes.
     fn row(&self, up: f64, gap: bool) -> MarkRow {
         let wider = BASE_WIDER * (1.0 - up / BASE).max(0.0);
         let angle = (self.vein_angle_deg + wider).min(88.0) * (ops::PI / 180.0);
         let (sin, cos) = ops::sin_cos(angle);
         let rise = cos / sin;
         let (mut least, mut most) = (0.0, 0.5 * self.width * self.length_m);
-        // Where it meets the outline: halving 40 times is to the last bits of a millimetre.
+        // The intersection with the outline: 40 halvings are precise to the last bits of a millimetre.
         for _ in 0..40 {
             let across = 0.5 * (least + most);
             if across < self.half_width(up + across * rise / self.length_m) {
@@ -107,13 +107,13 @@ impl LeafForm {
                 most = across;
             }
         }
-        // Where the outline ends in a point, a vein has some length all the same.
+        // If the outline ends in a point, a vein still has some length.
         let across = least.max(0.01 * self.width * self.length_m);
         let reach = if gap { 1.0 - self.lobes } else { 1.0 };
         self.pair(up, (across * reach, rise), gap)
     }
 
-    /// The lower margin of an entire leaf, along which no side vein runs.
+    /// Returns the lower margin of an entire leaf, along which no side vein runs.
     fn below(&self) -> MarkRow {
         self.pair(-0.004, (0.02 * self.width * self.length_m, 0.1), true)
     }
@@ -159,7 +159,7 @@ mod tests {
             let mut report = Report::default();
             let full = marks.complete(&mut report).expect("sound marks");
             assert_eq!(report.warnings, [], "{form:?}");
-            // Of two pairs, one lies far from the other.
+            // If there are only two pairs, one lies far from the other.
             assert!(veins < 3 || marks.strays().is_empty(), "{form:?}");
             let across = marks.rows.iter().flat_map(|r| r.points).map(|p| p.x.abs()).fold(0.0, f64::max);
             let most = 0.5 * width * form.length_m;

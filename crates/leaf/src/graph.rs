@@ -1,7 +1,7 @@
 //! A vein graph -> marks: the midrib, pairs of side veins, seven marks on each pair.
 //!
-//! nodes with radii, edges -> largest piece -> midrib (thickest way along the leaf) -> side veins (thickest ways
-//! to the margin) -> pairs -> marks
+//! nodes with radii, edges -> largest piece -> midrib (thickest path along the leaf) -> side veins (thickest paths to
+//! the margin) -> pairs -> marks
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -14,7 +14,7 @@ use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
 /// The veins of a flat leaf as a network, metres.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VeinGraph {
-    /// Where veins meet, end or bend; x to the right, y upwards, as one looks at the upper side.
+    /// Points where veins meet, end or bend; x to the right, y upwards, seen on the upper side.
     pub nodes: Vec<DVec2>,
     /// Half the thickness of the vein at each node, above 0.
     pub radii: Vec<f64>,
@@ -22,14 +22,14 @@ pub struct VeinGraph {
     pub edges: Vec<[u32; 2]>,
 }
 
-/// Why a vein graph makes no leaf.
+/// Reason why a vein graph makes no leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphError {
     /// A node has no usable place or radius.
     #[error("node {0} has a coordinate that is no number, or a radius that is not above 0")]
     Node(usize),
-    /// As many radii as nodes are needed.
+    /// The numbers of radii and nodes differ.
     #[error("{nodes} nodes have {radii} radii; give each node one")]
     Radii {
         /// Nodes given.
@@ -37,25 +37,25 @@ pub enum GraphError {
         /// Radii given.
         radii: usize,
     },
-    /// An edge names a node that is not there.
+    /// An edge names a node that does not exist.
     #[error("edge {edge} joins node {node}, but nodes count from 0 to {last}")]
     Edge {
         /// Index of the edge.
         edge: usize,
-        /// The node that it names.
+        /// The missing node.
         node: u32,
         /// The last node.
         last: usize,
     },
-    /// Too little of a network.
+    /// The network is too small.
     #[error("the largest connected piece has {0} nodes; a leaf needs a midrib and side veins: at least 20")]
     TooSmall(usize),
-    /// No two rows come out.
+    /// There are fewer than two rows.
     #[error("the network has no margin on both sides of its midrib; is it a whole leaf?")]
     OneSided,
 }
 
-/// The network, prepared: neighbours of each node, and the leaf's own axis.
+/// The prepared network: neighbours of each node, and the leaf's own axis.
 pub(crate) struct Net<'a> {
     graph: &'a VeinGraph,
     pub(crate) near: Vec<Vec<u32>>,
@@ -70,7 +70,7 @@ impl Eq for Open {}
 
 impl Ord for Open {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The cheapest first; equal costs by index, for the same way everywhere.
+        // The cheapest first; equal costs by index, for the same path everywhere.
         other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
     }
 }
@@ -144,7 +144,7 @@ impl<'a> Net<'a> {
         Ok(Self { graph, near, members: best })
     }
 
-    pub(crate) fn at(&self, k: u32) -> DVec2 {
+    pub(crate) fn node_position(&self, k: u32) -> DVec2 {
         self.graph.nodes[k as usize]
     }
 
@@ -152,9 +152,9 @@ impl<'a> Net<'a> {
         self.graph.radii[k as usize]
     }
 
-    /// Cheapest ways from all of `from`: the cost of each node and the node before it. A vein of twice the
-    /// radius is eight times as cheap (the conductance of a pipe is the fourth power; the cube is less at the
-    /// mercy of one badly measured node).
+    /// Returns the cheapest paths from all of `from`: the cost of each node and the node before it. A vein of twice the
+    /// radius is eight times as cheap (the conductance of a pipe is the fourth power; the cube is less sensitive to one
+    /// badly measured node).
     pub(crate) fn ways(&self, from: &[u32]) -> (Vec<f64>, Vec<u32>) {
         let n = self.graph.nodes.len();
         let (mut cost, mut before) = (vec![f64::INFINITY; n], vec![u32::MAX; n]);
@@ -169,7 +169,7 @@ impl<'a> Net<'a> {
             }
             for &m in &self.near[k as usize] {
                 let r = 0.5 * (self.radius(k) + self.radius(m));
-                let next = c + self.at(k).distance(self.at(m)) / (r * r * r);
+                let next = c + self.node_position(k).distance(self.node_position(m)) / (r * r * r);
                 if next < cost[m as usize] {
                     cost[m as usize] = next;
                     before[m as usize] = k;
@@ -180,20 +180,20 @@ impl<'a> Net<'a> {
         (cost, before)
     }
 
-    /// The midrib from the leaf's base to its tip.
+    /// Returns the midrib from the leaf's base to its tip.
     fn midrib(&self) -> Vec<u32> {
         let count = self.members.len() as f64;
-        let centre = self.members.iter().map(|&k| self.at(k)).sum::<DVec2>() / count;
+        let centre = self.members.iter().map(|&k| self.node_position(k)).sum::<DVec2>() / count;
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
         for &k in &self.members {
-            let d = self.at(k) - centre;
+            let d = self.node_position(k) - centre;
             xx += d.x * d.x;
             xy += d.x * d.y;
             yy += d.y * d.y;
         }
         let half = 0.5 * base::ops::atan2(2.0 * xy, xx - yy);
         let long = DVec2::new(base::ops::cos(half), base::ops::sin(half));
-        let along = |k: u32| (self.at(k) - centre).dot(long);
+        let along = |k: u32| (self.node_position(k) - centre).dot(long);
         let span = self
             .members
             .iter()
@@ -202,7 +202,7 @@ impl<'a> Net<'a> {
         let thickest = |a: &u32, b: &u32| self.radius(*a).total_cmp(&self.radius(*b)).then(b.cmp(a));
         let start = self.members.iter().copied().max_by(thickest).unwrap_or(0);
         let (cost, before) = self.ways(&[start]);
-        // The midrib comes first into the outermost twentieth; its end is what lies farthest out in the same line.
+        // The midrib is the first to reach the outermost twentieth; its end is the farthest point in the same line.
         let end = |sign: f64| {
             let far = if sign > 0.0 { span.1 } else { -span.0 };
             let within = |k: &&u32| sign * along(**k) > far - 0.05 * (span.1 - span.0);
@@ -210,11 +210,11 @@ impl<'a> Net<'a> {
                 |a: &&u32, b: &&u32| cost[**a as usize].total_cmp(&cost[**b as usize]).then(a.cmp(b));
             let first = self.members.iter().filter(within).min_by(cheaper).copied().unwrap_or(start);
             let way = trace(&before, first);
-            // Its direction over the last fifth of its way.
-            let back = self.at(way[way.len() - 1 - way.len() / 5]);
-            let ahead = (self.at(first) - back).try_normalize().unwrap_or(long * sign);
+            // Its direction over the last fifth of its path.
+            let back = self.node_position(way[way.len() - 1 - way.len() / 5]);
+            let ahead = (self.node_position(first) - back).try_normalize().unwrap_or(long * sign);
             let score = |k: u32| {
-                let d = self.at(k) - self.at(first);
+                let d = self.node_position(k) - self.node_position(first);
                 d.dot(ahead) - 1.5 * d.perp_dot(ahead).abs()
             };
             let ends = self.members.iter().filter(within).copied();
@@ -237,7 +237,7 @@ pub(crate) fn index(k: usize) -> u32 {
     u32::try_from(k).unwrap_or(u32::MAX)
 }
 
-/// The way back from `end` to where it started; `end` is last.
+/// Returns the path back from `end` to its start; `end` is last.
 pub(crate) fn trace(before: &[u32], end: u32) -> Vec<u32> {
     let mut line = vec![end];
     let mut k = end;
@@ -249,18 +249,18 @@ pub(crate) fn trace(before: &[u32], end: u32) -> Vec<u32> {
     line
 }
 
-/// A side vein: its way from the midrib outwards.
+/// A side vein: its path from the midrib outwards.
 struct Side {
-    /// Length along the midrib at which it leaves, and at which its end is.
+    /// Length along the midrib of its start, and of its end.
     from: f64,
     to: f64,
     line: Vec<DVec2>,
     radii: Vec<f64>,
-    /// How much of a vein it is.
+    /// Evidence that it is a vein.
     strength: f64,
 }
 
-/// A line without the kinks that side veins give it, its ends kept: places beside a kink would have no station.
+/// Smooths the kinks of a line at its side veins, its ends kept: points next to a kink would have no station.
 fn evened(mut line: Vec<DVec2>) -> Vec<DVec2> {
     for _ in 0..line.len().min(60) {
         let old = line.clone();
@@ -271,7 +271,7 @@ fn evened(mut line: Vec<DVec2>) -> Vec<DVec2> {
     line
 }
 
-/// The midrib as a line that knows lengths and sides.
+/// The midrib as a line with arc lengths and sides.
 struct Axis {
     points: Vec<DVec2>,
     lengths: Vec<f64>,
@@ -292,7 +292,7 @@ impl Axis {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// Length along the line of the nearest place, and the signed distance from it (right is positive).
+    /// Returns the length along the line of the nearest point, and the signed distance from it (right is positive).
     fn place(&self, p: DVec2) -> (f64, f64) {
         let mut best = (f64::INFINITY, 0.0, 0.0);
         for (w, s) in self.points.windows(2).zip(&self.lengths) {
@@ -311,7 +311,7 @@ impl Axis {
         (best.1, best.2)
     }
 
-    fn at(&self, s: f64) -> DVec2 {
+    fn point_at(&self, s: f64) -> DVec2 {
         let k = self.lengths.partition_point(|&l| l < s).clamp(1, self.points.len() - 1);
         let (a, b) = (self.lengths[k - 1], self.lengths[k]);
         let t = if b > a { ((s - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
@@ -319,7 +319,7 @@ impl Axis {
     }
 }
 
-/// The margin on one side: the farthest that the network reaches from the midrib at even stations.
+/// Returns the margin on one side: the greatest reach of the network from the midrib at even stations.
 fn margin(places: &[(f64, f64)], side: f64, length: f64) -> Vec<f64> {
     const STATIONS: usize = 60;
     let mut reach = vec![0.0_f64; STATIONS + 1];
@@ -340,31 +340,32 @@ fn reach_at(reach: &[f64], share: f64) -> f64 {
 }
 
 impl VeinGraph {
-    /// Marks of the leaf that the network is of: one row a pair of side veins, and one at the base.
+    /// Returns the marks of the leaf of this network: one row for each pair of side veins, and one at the base.
     ///
-    /// The midrib is the thickest way from one end of the leaf to the other, its thicker end the base; side veins
-    /// are the thickest ways from there to the margin, none crossing another. A pair leaves the midrib from one
-    /// mark, half way between the two where they alternate. Marks lie at equal lengths along a vein, thickness is
-    /// twice the radius. The margin is as close round the network as its meshes let it be. The marks stand upright: the root at the origin, the tip on +Y, the upper side to +Z.
-    /// Not kept: the small veins between. Cost: n log n in the nodes, times the midrib's for their places.
+    /// The midrib is the thickest path from one end of the leaf to the other, its thicker end the base; side veins are
+    /// the thickest paths from there to the margin, none crossing another. A pair leaves the midrib from one mark, half
+    /// way between the two where they alternate. Marks lie at equal lengths along a vein, thickness is twice the
+    /// radius. The margin is as close around the network as its meshes allow. The marks stand upright: the root at the
+    /// origin, the tip on +Y, the upper side towards +Z.
+    /// Not kept: the small veins between. Cost: n log n in the nodes, times the midrib's for their positions.
     ///
     /// # Errors
     /// [`GraphError`].
     pub fn marks(&self, report: &mut Report) -> Result<Marks, GraphError> {
         let net = Net::new(self, report)?;
         let whole = net.midrib();
-        // 400 points are finer than a midrib bends, and keep the search for nearest places short.
+        // 400 points are finer than a midrib bends, and keep the search for nearest points short.
         let step = whole.len().div_ceil(400).max(1);
         let last = whole.len().saturating_sub(1);
         let midrib: Vec<u32> =
             whole.iter().enumerate().filter(|(i, _)| i % step == 0 || *i == last).map(|(_, &k)| k).collect();
-        let axis = Axis::new(evened(midrib.iter().map(|&k| net.at(k)).collect()));
+        let axis = Axis::new(evened(midrib.iter().map(|&k| net.node_position(k)).collect()));
         let length = axis.length();
         if midrib.len() < 3 || length <= 0.0 {
             return Err(GraphError::TooSmall(midrib.len()));
         }
         let (_, before) = net.ways(&whole);
-        let places: Vec<(f64, f64)> = net.members.iter().map(|&k| axis.place(net.at(k))).collect();
+        let places: Vec<(f64, f64)> = net.members.iter().map(|&k| axis.place(net.node_position(k))).collect();
         let margins = [1.0, -1.0].map(|side| margin(&places, side, length));
         let widest = |m: &[f64]| m.iter().copied().fold(0.0, f64::max);
         if margins.iter().any(|m| widest(m) < 0.02 * length) {
@@ -404,11 +405,11 @@ impl VeinGraph {
         let mut rows: Vec<MarkRow> =
             rows_of.iter().rev().map(|[right, left]| frame.row(&axis, right, left, near)).collect();
         rows.push(frame.base(&axis, (&margins, outline.as_deref()), near(0.0)));
-        let tip = frame.place(axis.at(length));
+        let tip = frame.place(axis.point_at(length));
         let margin = outline.into_iter().flatten().map(|p| frame.place(p)).collect();
         let mut marks = Marks { rows, tip, tip_thickness: near(length), margin };
         if marks.margin.is_empty() || marks.complete(&mut Report::default()).is_err() {
-            // Without the margin what is wrong with the marks is told where they are used.
+            // Faults of the marks apart from the margin are reported where the marks are used.
             marks.margin.clear();
             report.warn(
                 "margin-not-found",
@@ -420,13 +421,13 @@ impl VeinGraph {
 }
 
 fn upright(axis: &Axis) -> DVec2 {
-    (axis.at(axis.length()) - axis.points[0]).try_normalize().unwrap_or(DVec2::Y)
+    (axis.point_at(axis.length()) - axis.points[0]).try_normalize().unwrap_or(DVec2::Y)
 }
 
-/// The way to a margin node, if it is a vein and not a detour.
+/// Returns the path to a margin node, if it is a vein and not a detour.
 fn side_vein(net: &Net<'_>, before: &[u32], axis: &Axis, end: u32, to: f64) -> Option<Side> {
     let way = trace(before, end);
-    let line: Vec<DVec2> = way.iter().map(|&k| net.at(k)).collect();
+    let line: Vec<DVec2> = way.iter().map(|&k| net.node_position(k)).collect();
     let (first, last) = (*line.first()?, *line.last()?);
     let (from, _) = axis.place(first);
     let long = geom::polyline_length(&line);
@@ -436,8 +437,8 @@ fn side_vein(net: &Net<'_>, before: &[u32], axis: &Axis, end: u32, to: f64) -> O
         return None;
     }
     let radii: Vec<f64> = way.iter().map(|&k| net.radius(k)).collect();
-    // The radius of an even vein of the same conductance, over the outer two thirds: near the midrib every way is
-    // thick, and a way through the net has thin places. Detours count against it.
+    // The radius of a uniform vein of the same conductance, over the outer two thirds: near the midrib every path is
+    // thick, and a path through the net has thin places. Detours reduce it.
     let outer = way.len() / 3;
     let cost: f64 = (outer + 1..way.len())
         .map(|i| {
@@ -449,14 +450,14 @@ fn side_vein(net: &Net<'_>, before: &[u32], axis: &Axis, end: u32, to: f64) -> O
     Some(Side { from, to, line, radii, strength })
 }
 
-/// The strongest veins that keep their order and their distance from one another.
+/// Returns the strongest veins that keep their order and their distance from one another.
 fn chosen(mut all: Vec<Side>, length: f64) -> Vec<Side> {
     base::sort_by(&mut all, |a, b| {
         b.strength.total_cmp(&a.strength).then(a.from.total_cmp(&b.from)).then(a.to.total_cmp(&b.to))
     });
     let mut kept: Vec<Side> = Vec::new();
     for one in all {
-        // 0.035: leaves with more than some 25 pairs have side veins that no longer differ from the net.
+        // 0.035: in leaves with more than some 25 pairs, side veins no longer differ from the net.
         let apart = |k: &Side| {
             let (a, b) = (one.from - k.from, one.to - k.to);
             a.abs() > 0.035 * length && b.abs() > 0.02 * length && (a > 0.0) == (b > 0.0)
@@ -469,7 +470,7 @@ fn chosen(mut all: Vec<Side>, length: f64) -> Vec<Side> {
     kept
 }
 
-/// Veins of the two sides that leave the midrib near one another, nearest first, in order.
+/// Pairs veins of the two sides that leave the midrib near one another, nearest first, in order.
 fn paired(right: &[Side], left: &[Side], length: f64) -> Vec<(usize, usize)> {
     let mut all: Vec<(f64, usize, usize)> = Vec::new();
     for (i, r) in right.iter().enumerate() {
@@ -491,7 +492,7 @@ fn paired(right: &[Side], left: &[Side], length: f64) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Pairs of veins from the base up, right and left, and how many of them got a partner that was not there.
+/// Returns pairs of veins from the base up, right and left, and the number of veins that were given a missing partner.
 fn rows(
     [right, left]: [Vec<Side>; 2],
     axis: &Axis,
@@ -540,7 +541,7 @@ fn rows(
     (out, lone)
 }
 
-/// A straight vein on the other side (right is 1), to where its neighbours' ends let one expect its own.
+/// Makes a straight vein on the other side (right is 1), to the end expected from those of its neighbours.
 fn partner(
     vein: &Side,
     ends: &[(f64, f64)],
@@ -555,24 +556,24 @@ fn partner(
         (None, None) => return None,
     };
     let length = axis.length();
-    let along = (axis.at(to + 0.02 * length) - axis.at(to - 0.02 * length)).try_normalize()?;
+    let along = (axis.point_at(to + 0.02 * length) - axis.point_at(to - 0.02 * length)).try_normalize()?;
     let across = DVec2::new(along.y, -along.x) * side;
-    let end = axis.at(to) + across * (0.97 * reach_at(margin, to / length)).max(0.01 * length);
-    let foot = axis.at(vein.from);
-    // A notch may be there.
+    let end = axis.point_at(to) + across * (0.97 * reach_at(margin, to / length)).max(0.01 * length);
+    let foot = axis.point_at(vein.from);
+    // The margin may have a notch there.
     let end = outline.map_or(end, |o| foot.lerp(end, share_within(o, foot, end)));
     let line = (0..=6).map(|k| foot.lerp(end, f64::from(k) / 6.0)).collect();
     let radii = (0..=6).map(|k| vein.radii[k * (vein.radii.len() - 1) / 6]).collect();
     Some(Side { from: vein.from, to, line, radii, strength: vein.strength })
 }
 
-/// The share of the way from the midrib outwards after which an end lies within the margin: at least a tenth.
+/// Returns the share of the path from the midrib outwards at which an end lies within the margin: at least a tenth.
 fn share_within(outline: &[DVec2], from: DVec2, to: DVec2) -> f64 {
     let shares = (0..18).map(|k| 1.0 - 0.05 * f64::from(k));
     shares.into_iter().find(|&s| geom::contains(outline, from.lerp(to, s))).unwrap_or(0.1)
 }
 
-/// From the graph's plane to the marks' space.
+/// The transformation from the graph's plane to the marks' space.
 struct Frame {
     origin: DVec2,
     up: DVec2,
@@ -587,7 +588,7 @@ impl Frame {
     fn row(&self, axis: &Axis, right: &Side, left: &Side, near: impl Fn(f64) -> Option<f64>) -> MarkRow {
         let middle = 0.5 * (right.from + left.from);
         let mut row = MarkRow { midrib: near(middle), ..MarkRow::default() };
-        let foot = axis.at(middle);
+        let foot = axis.point_at(middle);
         for (side, at) in [(right, [2, 1, 0]), (left, [4, 5, 6])] {
             let mut line = side.line.clone();
             line[0] = foot;
@@ -605,7 +606,7 @@ impl Frame {
         row
     }
 
-    /// The lowest row: across the leaf where the midrib begins, as wide as the leaf is there.
+    /// Makes the lowest row: across the leaf where the midrib begins, as wide as the leaf is there.
     fn base(
         &self,
         axis: &Axis,
@@ -629,7 +630,7 @@ impl Frame {
     }
 }
 
-/// The point at `s` along a line, and the node before it.
+/// Returns the point at `s` along a line, and the node before it.
 pub(crate) fn along(line: &[DVec2], s: f64) -> (DVec2, usize) {
     let mut left = s;
     for (k, w) in line.windows(2).enumerate() {
@@ -658,7 +659,7 @@ base::coded!(GraphError {
 mod tests {
     use super::*;
 
-    /// A made leaf: a midrib of 100 mm, `pairs` of side veins at 45 degrees, small veins between.
+    /// Makes a leaf: a midrib of 100 mm, `pairs` of side veins at 45 degrees, small veins between.
     fn made(pairs: u32, turn: f64) -> VeinGraph {
         let mut g = VeinGraph::default();
         let (s, c) = base::ops::sin_cos(turn);

@@ -10,9 +10,9 @@ use crate::thickness::ThicknessRule;
 
 /// A leaf measured on several days.
 ///
-/// The length grows along a monotone curve of its logarithm, the shape (marks from the root, in lengths) and
-/// the thickness along straight lines between stages. Guaranteed: on each measured day the measured marks;
-/// between two days a length between theirs. Not done: days outside the measured ones.
+/// The length grows along a monotone curve of its logarithm, the shape (marks from the root, in lengths) and the
+/// thickness along straight lines between stages. Guaranteed: on each measured day the measured marks; between two days
+/// a length between theirs. Not supported: days outside the measured ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeafGrowth {
     stages: Vec<Stage>,
@@ -27,14 +27,14 @@ struct Stage {
     slope: f64,
 }
 
-/// Why no leaf can be grown between stages.
+/// Reason why no leaf can be grown between stages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StagesError {
-    /// Nothing to grow between.
+    /// There are fewer than two stages.
     #[error("growth needs at least 2 stages, {0} were given")]
     TooFew(usize),
-    /// Days that do not increase.
+    /// The days do not increase.
     #[error("day {this} comes after day {before}; give the stages in the order of their days, each day once")]
     Order {
         /// The earlier entry.
@@ -42,17 +42,17 @@ pub enum StagesError {
         /// The later entry.
         this: f64,
     },
-    /// A day is no finite number, or the day asked for is not covered.
+    /// A day is not a finite number, or the requested day is not covered.
     #[error("day {day} is outside the measured days {first} to {last}")]
     Outside {
-        /// The day asked for.
+        /// The requested day.
         day: f64,
         /// The first day measured.
         first: f64,
         /// The last day measured.
         last: f64,
     },
-    /// Stages that cannot be one leaf, such as in different units.
+    /// The stages cannot be one leaf, for example because their units differ.
     #[error(
         "from day {before} to day {this} the leaf's length changes {factor:.3} times; are both in the same unit?"
     )]
@@ -64,21 +64,21 @@ pub enum StagesError {
         /// Later length over earlier length.
         factor: f64,
     },
-    /// A stage makes no leaf.
+    /// The marks of a stage make no leaf.
     #[error("day {day}: {fault}")]
     Marks {
         /// The stage's day.
         day: f64,
-        /// What is wrong.
+        /// The fault.
         fault: MarksError,
     },
 }
 
-// A leaf may grow a hundredfold between two visits; a factor of 1000 is millimetres taken for metres.
+// A leaf may grow a hundredfold between two visits; a factor of 1000 means millimetres taken for metres.
 const MOST: f64 = 300.0;
 
 impl LeafGrowth {
-    /// Stages of one leaf by day. Stages with fewer rows than others get as many, on their own blade.
+    /// Makes the stages of one leaf by day. Stages with fewer rows than others are resampled on their own blade.
     ///
     /// # Errors
     /// [`StagesError`].
@@ -112,16 +112,16 @@ impl LeafGrowth {
         Ok(Self { stages: all })
     }
 
-    /// The first and the last day.
+    /// Returns the first and the last day.
     pub fn days(&self) -> (f64, f64) {
         (self.stages[0].day, self.stages[self.stages.len() - 1].day)
     }
 
-    /// The leaf on a day between the first and the last.
+    /// Returns the leaf on a day between the first and the last.
     ///
     /// # Errors
     /// [`StagesError::Outside`].
-    pub fn at(&self, day: f64) -> Result<FullMarks, StagesError> {
+    pub fn marks_on_day(&self, day: f64) -> Result<FullMarks, StagesError> {
         let (first, last) = self.days();
         if !(first..=last).contains(&day) {
             return Err(StagesError::Outside { day, first, last });
@@ -153,11 +153,11 @@ impl LeafGrowth {
             |p, q| ((p - ra) / a.length).lerp((q - rb) / b.length, t),
             |x, y| ops::lerp(x, y, t),
         );
-        // The teeth of two days are not the same ones: those of the nearer day go with the blade.
+        // The teeth on two days do not correspond: those of the nearer day follow the blade.
         if !a.marks.margin.is_empty() && !b.marks.margin.is_empty() {
             raw.margin.clone_from(&if t < 0.5 { a } else { b }.marks.margin);
         }
-        // Straight lines between turned shapes are a little short: scaled back to the length.
+        // Straight lines between turned shapes are slightly short: the result is scaled back to the length.
         let scale = length / geom::polyline_length3(&raw.midrib()).max(f64::MIN_POSITIVE);
         Ok(raw.map(|p| root + p * scale, |t| t))
     }
@@ -182,7 +182,7 @@ fn blend(
     }
 }
 
-/// Slopes of the logarithm of the length for a monotone cubic (weighted harmonic mean of neighbouring chords).
+/// Sets the slopes of the logarithm of the length for a monotone cubic (weighted harmonic mean of neighbouring chords).
 fn set_slopes(stages: &mut [Stage]) {
     let chord = |a: &Stage, b: &Stage| (ops::ln(b.length) - ops::ln(a.length)) / (b.day - a.day);
     let chords: Vec<f64> = stages.windows(2).map(|w| chord(&w[0], &w[1])).collect();
@@ -201,7 +201,7 @@ fn set_slopes(stages: &mut [Stage]) {
     }
 }
 
-/// The same leaf with `rows` rows: its interpolating blade and veins at even steps of the row's number.
+/// Resamples a leaf to `rows` rows: its interpolating blade and veins at even steps of the row's number.
 fn with_rows(marks: FullMarks, rows: usize) -> FullMarks {
     let have = marks.rows.len();
     if have == rows {
@@ -212,7 +212,7 @@ fn with_rows(marks: FullMarks, rows: usize) -> FullMarks {
     let places = leaf.blade.rows_at();
     let radii = |i: usize, j: usize| marks.rows[have - 1 - i.min(have - 1)].thickness[j];
     let row = |k: usize| {
-        // Row k of the new ones from the root; the tip is no row.
+        // Row k of the new ones from the root; the tip is not a row.
         let x = k as f64 * have as f64 / rows as f64;
         let i = (0..have).rev().find(|&i| i as f64 <= x).unwrap_or(0);
         let part = x - i as f64;
@@ -249,11 +249,11 @@ mod tests {
             vec![(5.0, full(6, 0.02)), (9.0, full(6, 0.1)), (12.0, full(6, 0.11)), (20.0, full(6, 0.3))];
         let growth = LeafGrowth::new(stages.clone()).unwrap();
         for (day, marks) in &stages {
-            assert_eq!(&growth.at(*day).unwrap(), marks);
+            assert_eq!(&growth.marks_on_day(*day).unwrap(), marks);
         }
         let mut last = 0.0;
         for k in 0..=150 {
-            let now = length(&growth.at(5.0 + f64::from(k) * 0.1).unwrap());
+            let now = length(&growth.marks_on_day(5.0 + f64::from(k) * 0.1).unwrap());
             assert!(now >= last, "{k}: {now} after {last}");
             last = now;
         }
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn constant_rate_is_found_between() {
         let growth = LeafGrowth::new(vec![(0.0, full(5, 0.1)), (10.0, full(5, 0.4))]).unwrap();
-        let middle = growth.at(5.0).unwrap();
+        let middle = growth.marks_on_day(5.0).unwrap();
         assert!((length(&middle) / length(&full(5, 0.2)) - 1.0).abs() < 1e-12);
         assert!(
             middle.rows[2].points[1].distance(full(5, 0.2).rows[2].points[1] - full(5, 0.2).root()) < 1e-12
@@ -272,11 +272,11 @@ mod tests {
     #[test]
     fn stages_of_different_rows_become_one_leaf() {
         let growth = LeafGrowth::new(vec![(0.0, full(4, 0.1)), (10.0, full(9, 0.3))]).unwrap();
-        let young = growth.at(0.0).unwrap();
+        let young = growth.marks_on_day(0.0).unwrap();
         assert_eq!(young.rows.len(), 9);
         assert!(young.to_marks().validate().next().is_none());
         assert!((length(&young) / length(&full(4, 0.1)) - 1.0).abs() < 0.01);
-        // Every fourth of nine... the root and tip are the same points.
+        // The root and the tip are the same points.
         assert!(young.root().distance(full(4, 0.1).root()) < 1e-12 && young.tip == full(4, 0.1).tip);
     }
 
@@ -295,7 +295,7 @@ mod tests {
             Err(StagesError::Unit { .. })
         ));
         let growth = LeafGrowth::new(vec![(1.0, one()), (2.0, one())]).unwrap();
-        assert!(matches!(growth.at(2.5), Err(StagesError::Outside { .. })));
-        assert!(matches!(growth.at(f64::NAN), Err(StagesError::Outside { .. })));
+        assert!(matches!(growth.marks_on_day(2.5), Err(StagesError::Outside { .. })));
+        assert!(matches!(growth.marks_on_day(f64::NAN), Err(StagesError::Outside { .. })));
     }
 }

@@ -4,11 +4,11 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `marks` | [`Marks`]: what was measured, what is missing, the rule of Wang et al. (2011) for missing thickness |
-//! | `margin` | [`MarginPoint`]: a margin of the leaf's own, that goes where the blade goes |
+//! | `marks` | [`Marks`]: measurements, their gaps, the rule of Wang et al. (2011) for missing thickness |
+//! | `margin` | [`MarginPoint`]: a margin of the leaf's own, that follows the blade |
 //! | `form` | [`LeafForm`]: a few numbers -> marks |
 //! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |
-//! | `outline` | the margin that a network of veins shows |
+//! | `outline` | the margin around a network of veins |
 //! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `pose` | curl and wilt |

@@ -1,6 +1,6 @@
 //! Side veins of the lobes of a palmate leaf.
 //!
-//! chief vein, margin -> ends on the margin, teeth first -> straight ways over the blade -> `Vein`s
+//! chief vein, margin -> ends on the margin, teeth first -> straight paths over the blade -> `Vein`s
 
 use base::ops;
 use geom::{Ball, BallBSpline, NaturalCubic, SplineSurface};
@@ -11,15 +11,15 @@ use crate::rays::{RayLeaf, Rays};
 
 /// Points of a side vein on the blade; between them it is a cubic.
 const POINTS: usize = 17;
-/// Side veins leave a chief vein at 40 degrees.
+/// Cosine of the angle between a side vein and its chief vein: 40 degrees.
 const LEAVES_AT: f64 = 0.766;
 
 impl RayLeaf {
-    /// Lays up to `each` side veins (at most 12) from each chief vein to the margin of its lobe on either side.
+    /// Adds up to `each` side veins (at most 12) from each chief vein to the margin of its lobe on either side.
     ///
-    /// They are made by rule, not measured: they end on teeth where the margin has some, leave the chief vein at
-    /// about 40 degrees and have half of its thickness there. Every mark of theirs lies on the blade. Where a way
-    /// would leave the blade, or where chief veins come together again (parallel veins), there is none.
+    /// They are made by rule, not measured: they end on teeth where the margin has some, leave the chief vein at about
+    /// 40 degrees and have half of its thickness there. All their marks lie on the blade. A path that would leave the
+    /// blade gets no vein, nor do chief veins that come together again (parallel veins).
     pub fn add_side_veins(&mut self, rays: &Rays, each: usize) {
         let from_left: Vec<_> = rays.rays.iter().rev().collect();
         let ends: Vec<DVec3> = from_left.iter().filter_map(|r| r.points.last().copied()).collect();
@@ -43,7 +43,7 @@ impl RayLeaf {
         }
     }
 
-    /// The side veins of one half of a lobe; `margin` are the rays from the chief vein to the notch.
+    /// Returns the side veins of one half of a lobe; `margin` are the rays from the chief vein to the notch.
     fn one_side(
         &self,
         chief: usize,
@@ -88,7 +88,7 @@ impl RayLeaf {
                 |m| us[margin[m]],
             );
             let Some(v0) = self.leaves_at(u0, self.blade.point(u1, 0.985)) else { continue };
-            // Ends that follow one another towards the base leave the chief vein in the same order, apart.
+            // Consecutive ends towards the base leave the chief vein in the same order, apart.
             if v0 > last - 0.045 {
                 continue;
             }
@@ -100,7 +100,7 @@ impl RayLeaf {
         out
     }
 
-    /// Where on the chief vein at `u` a side vein to `end` leaves at the right angle.
+    /// Returns the place on the chief vein at `u` where a side vein to `end` leaves at the right angle.
     fn leaves_at(&self, u: f64, end: DVec3) -> Option<f64> {
         let cosine = |v: f64| {
             let at = self.blade.point(u, v);
@@ -108,7 +108,7 @@ impl RayLeaf {
             along.normalize_or_zero().dot((end - at).normalize_or_zero())
         };
         let found = (6..=45).map(|k| 0.02 * f64::from(k)).find(|&v| cosine(v) < LEAVES_AT)?;
-        // Near the base an end may lie far to the side: 72 degrees are no side vein any more.
+        // Near the base an end may lie far to the side: at 72 degrees it is no longer a side vein.
         (cosine(found) > 0.3).then_some(found)
     }
 
@@ -122,7 +122,7 @@ impl RayLeaf {
         let mut uv = DVec2::from_array(from);
         for k in 0..POINTS {
             let s = k as f64 / (POINTS - 1) as f64;
-            // A little arched towards the tip of the lobe.
+            // Slightly arched towards the tip of the lobe.
             let target = start.lerp(end, s) + ahead * (0.16 * long * s * (1.0 - s));
             uv = nearest(&self.blade, uv, target);
             let p = self.blade.point(uv.x, uv.y);
@@ -133,7 +133,7 @@ impl RayLeaf {
         }
         let points: Vec<DVec3> = balls.iter().map(|b| b.centre).collect();
         let marks = geom::chord_parameters(&points)?;
-        // Places that fell together have no chord.
+        // Coincident points have no chord.
         if marks.len() != balls.len() {
             return None;
         }
@@ -142,12 +142,12 @@ impl RayLeaf {
     }
 }
 
-/// The parameters of the place on a blade nearest to `p`, by Gauss and Newton from `uv` on.
+/// Returns the parameters of the point on a blade nearest to `p`, by Gauss and Newton from `uv` on.
 fn nearest(blade: &SplineSurface, mut uv: DVec2, p: DVec3) -> DVec2 {
     const STEP: f64 = 1e-6;
     for _ in 0..12 {
         let at = blade.point(uv.x, uv.y);
-        // Differences taken inwards, so that both places lie in the domain.
+        // Differences are taken inwards, so that both points lie in the domain.
         let side = DVec2::select(uv.cmplt(DVec2::splat(0.5)), DVec2::ONE, DVec2::NEG_ONE) * STEP;
         let du = (blade.point(uv.x + side.x, uv.y) - at) / side.x;
         let dv = (blade.point(uv.x, uv.y + side.y) - at) / side.y;
@@ -158,7 +158,7 @@ fn nearest(blade: &SplineSurface, mut uv: DVec2, p: DVec3) -> DVec2 {
             break;
         }
         let step = DVec2::new(c * du.dot(off) - b * dv.dot(off), a * dv.dot(off) - b * du.dot(off)) / det;
-        // 0.2: teeth make the blade wavy, a long step may come down on another lobe.
+        // 0.2: teeth make the blade wavy, a long step could land on another lobe.
         let step = step.clamp_length_max(0.2);
         uv = (uv + step).clamp(DVec2::new(0.0, 0.01), DVec2::ONE);
         if step.length() < 1e-10 {

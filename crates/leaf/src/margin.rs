@@ -1,4 +1,4 @@
-//! A margin of a leaf's own, of any number of points: where it lies about the blade that the rows of marks make.
+//! A margin of a leaf's own, of any number of points: its position relative to the blade through the rows of marks.
 
 use geom::{SplineSurface, subdivided};
 use glam::DVec3;
@@ -8,19 +8,20 @@ use crate::blade::Leaf;
 use crate::marks::{FullMarks, MarginPoint, MarksError};
 use crate::spec::LeafSpec;
 
-/// Steps between marks in which the nearest place is looked for first.
+/// Steps between marks in the initial search for the nearest point.
 const STEPS: usize = 6;
-/// Newton's steps from there; it has the place to rounding after three.
+/// Newton steps from there; three reach rounding.
 const ROUNDS: u32 = 8;
 
 impl FullMarks {
-    /// The same leaf with this margin, in the places of the marks: counter-clockwise as one looks at the upper side.
+    /// Returns the same leaf with this margin, in the coordinates of the marks: counter-clockwise seen on the upper
+    /// side.
     ///
     /// Cost: points times marks.
     ///
     /// # Errors
-    /// [`MarksError`] for fewer than 3 points, unusable points, and a margin that crosses itself on the blade laid flat or
-    /// leaves out the middle of the leaf.
+    /// [`MarksError`] for fewer than 3 points, unusable points, and a margin that crosses itself on the blade laid flat
+    /// or excludes the middle of the leaf.
     pub fn within(mut self, points: &[DVec3]) -> Result<Self, MarksError> {
         self.margin.clear();
         if points.is_empty() {
@@ -34,7 +35,7 @@ impl FullMarks {
         }
         let Some(blade) = self.blade() else { return Ok(self) };
         let length = geom::polyline_length3(&self.midrib());
-        let seeds = Seeds::of(&blade.surface);
+        let seeds = Seeds::from_surface(&blade.surface);
         self.margin = points.iter().map(|&p| attached(&blade, &seeds, p, length)).collect();
         let rimmed = SplineBlade { rim: self.rim(&blade), ..blade };
         let flat = rimmed.flat(2);
@@ -52,12 +53,12 @@ impl FullMarks {
         Ok(self)
     }
 
-    /// Where the margin lies on a blade of these marks, in whatever pose they are.
+    /// Returns the position of the margin on a blade of these marks, in any pose.
     pub(crate) fn rim(&self, blade: &SplineBlade) -> Vec<RimPoint> {
         let length = geom::polyline_length3(&self.midrib());
         let (us, vs) = (blade.surface.columns_at(), blade.surface.rows_at());
         let place = |m: &MarginPoint| {
-            let (u, v) = (at(us, m.column), at(vs, m.row));
+            let (u, v) = (parameter_at(us, m.column), parameter_at(vs, m.row));
             let on = blade.surface.point(u, v);
             let off = blade.directions(u, v).map_or(DVec3::ZERO, |[across, along, up]| {
                 (across * m.off.x + along * m.off.y + up * m.off.z) * length
@@ -67,24 +68,24 @@ impl FullMarks {
         self.margin.iter().map(place).collect()
     }
 
-    /// The places of the margin.
+    /// Returns the points of the margin.
     pub(crate) fn margin_places(&self) -> Vec<DVec3> {
         let blade = (!self.margin.is_empty()).then(|| self.blade()).flatten();
         blade.map_or_else(Vec::new, |b| self.rim(&b).into_iter().map(|r| r.place).collect())
     }
 
-    /// The blade through the marks, without a margin of its own.
+    /// Returns the blade through the marks, without a margin of its own.
     fn blade(&self) -> Option<SplineBlade> {
         let bare = Self { margin: Vec::new(), ..self.clone() };
         Leaf::new(&bare, &LeafSpec::default()).ok().map(|l| l.blade())
     }
 }
 
-/// Places of a surface to begin the search from.
+/// Points of a surface from which the search begins.
 struct Seeds(Vec<(f64, f64, DVec3)>);
 
 impl Seeds {
-    fn of(surface: &SplineSurface) -> Self {
+    fn from_surface(surface: &SplineSurface) -> Self {
         let (us, vs) = (subdivided(surface.columns_at(), STEPS), subdivided(surface.rows_at(), STEPS));
         let points = surface.grid(&us, &vs);
         let each = points.iter().enumerate();
@@ -92,17 +93,17 @@ impl Seeds {
     }
 }
 
-/// The nearest place of the blade to `p` (Gauss and Newton, within the domain), and what is left from there.
+/// Attaches `p` to the nearest point of the blade (Gauss and Newton, within the domain), with the remaining offset.
 fn attached(blade: &SplineBlade, seeds: &Seeds, p: DVec3, length: f64) -> MarginPoint {
     let nearest = seeds.0.iter().min_by(|a, b| a.2.distance(p).total_cmp(&b.2.distance(p)));
     let (mut u, mut v) = nearest.map_or((blade.middle, 0.0), |s| (s.0, s.1));
     let (ud, vd) = (blade.surface.u().domain(), blade.surface.v().domain());
     for _ in 0..ROUNDS {
-        let s = blade.surface.at(u, v);
+        let s = blade.surface.point_at(u, v);
         let off = p - s.position;
         let (uu, uv, vv) = (s.du.length_squared(), s.du.dot(s.dv), s.dv.length_squared());
         let (a, b) = (s.du.dot(off), s.dv.dot(off));
-        // On an edge the way along it alone counts.
+        // On an edge only the component along it counts.
         let edge = |x: f64, d: (f64, f64), g: f64| (x <= d.0 && g < 0.0) || (x >= d.1 && g > 0.0);
         let det = uu * vv - uv * uv;
         let (du, dv) = match (edge(u, ud, a), edge(v, vd, b)) {
@@ -126,14 +127,14 @@ fn attached(blade: &SplineBlade, seeds: &Seeds, p: DVec3, length: f64) -> Margin
     MarginPoint { column, row, off }
 }
 
-/// The parameter at a count of marks, even between two.
-fn at(marks: &[f64], count: f64) -> f64 {
+/// Returns the parameter at a count of marks, linear between two.
+fn parameter_at(marks: &[f64], count: f64) -> f64 {
     let last = marks.len() - 1;
     let k = (0..last).rev().find(|&k| k as f64 <= count).unwrap_or(0);
     base::ops::lerp(marks[k], marks[k + 1], (count - k as f64).clamp(0.0, 1.0))
 }
 
-/// The count of marks at a parameter.
+/// Returns the count of marks at a parameter.
 fn whereabouts(marks: &[f64], x: f64) -> f64 {
     let k = marks.partition_point(|&m| m <= x).clamp(1, marks.len() - 1);
     (k - 1) as f64 + ((x - marks[k - 1]) / (marks[k] - marks[k - 1])).clamp(0.0, 1.0)
@@ -147,7 +148,7 @@ mod tests {
     use crate::marks::Marks;
     use crate::{LeafForm, Pose};
 
-    /// A leaf and a margin with teeth of a tenth of its half width, `n` points a side.
+    /// Makes a leaf and a margin with teeth of a tenth of its half width, `n` points per side.
     fn toothed(n: u32) -> Marks {
         let form = LeafForm { fold_deg: 0.0, ..LeafForm::default() };
         let mut marks = form.marks();
@@ -190,7 +191,7 @@ mod tests {
             let change = 100.0 * (area(&bent) / before - 1.0);
             assert!(change.abs() < 2.0, "curl {curl} wilt {wilt}: {change:+.2} %");
         }
-        // Twice as large it has the same teeth.
+        // At twice the size it has the same teeth.
         let twice = full.scaled(2.0);
         assert!((area(&twice) / before - 4.0).abs() < 1e-6);
     }
@@ -206,7 +207,7 @@ mod tests {
         assert_eq!(fault(|m| m.margin[7].x = f64::NAN), MarksError::MarginNotFinite(8));
         assert!(matches!(fault(|m| m.margin.swap(5, 25)), MarksError::MarginCrosses(_)));
         assert_eq!(fault(|m| m.margin.iter_mut().for_each(|p| p.x += 0.5)), MarksError::MarginApart);
-        // The other way round is the same margin.
+        // In the reverse direction it is the same margin.
         let mut back = toothed(20);
         back.margin.reverse();
         let (a, b) = (toothed(20), back);

@@ -1,4 +1,4 @@
-//! What was measured on a leaf: rows of marks along the side veins, with thickness.
+//! Measurements of a leaf: rows of marks along the side veins, with thickness.
 
 use base::Report;
 use glam::DVec3;
@@ -8,13 +8,13 @@ pub const MARKS_A_ROW: usize = 7;
 
 const MIDDLE: usize = 3;
 
-/// The blade is about 2.6 % as thick as its veins are on average (Wang et al. 2011, section 2).
+/// Thickness of the blade as a share of the mean thickness of its veins (Wang et al. 2011, section 2).
 const BLADE_SHARE: f64 = 0.026;
 
-/// Marks on one leaf as they were measured; thickness may be missing.
+/// Measured marks of one leaf; thickness may be missing.
 ///
-/// Wang et al. (2011), section 1.2: rows are counted from the tip down, marks from the right margin to the left as one
-/// looks at the upper side with the tip up; the fourth lies where the side veins leave the midrib.
+/// Wang et al. (2011), section 1.2: rows are counted from the tip down, marks from the right margin to the left seen on
+/// the upper side with the tip up; the fourth lies where the side veins leave the midrib.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
     /// Rows from the tip down, at least 2.
@@ -23,8 +23,8 @@ pub struct Marks {
     pub tip: DVec3,
     /// Thickness of the midrib at the tip, metres.
     pub tip_thickness: Option<f64>,
-    /// The margin, metres: once round the blade, from any point on; empty where it is that of the rows' ends. The blade
-    /// then has its teeth and lobes.
+    /// The margin, metres: once round the blade, from any point on; empty if it follows the ends of the rows. With it
+    /// the blade has its teeth and lobes.
     pub margin: Vec<DVec3>,
 }
 
@@ -39,7 +39,7 @@ pub struct MarkRow {
     pub midrib: Option<f64>,
 }
 
-/// Marks with every thickness known; see [`Marks::complete`].
+/// Marks with all thicknesses known; see [`Marks::complete`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullMarks {
     /// Rows from the tip down.
@@ -48,7 +48,7 @@ pub struct FullMarks {
     pub tip: DVec3,
     /// Thickness of the midrib at the tip.
     pub tip_thickness: f64,
-    /// The margin, counter-clockwise as one looks at the upper side; empty where it is that of the rows' ends.
+    /// The margin, counter-clockwise seen on the upper side; empty if it follows the ends of the rows.
     pub margin: Vec<MarginPoint>,
 }
 
@@ -63,25 +63,26 @@ pub struct FullRow {
     pub midrib: f64,
 }
 
-/// A point of the margin, known by the place of the blade that it lies nearest to, so that it goes where the blade goes.
+/// A point of the margin, attached to the nearest point of the blade, so that it follows the blade.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarginPoint {
-    /// That place: marks from the left margin (0) to the right (6).
+    /// Column of the nearest point: marks from the left margin (0) to the right (6).
     pub column: f64,
-    /// That place: rows from the last (0) to the tip.
+    /// Row of the nearest point: rows from the last (0) to the tip.
     pub row: f64,
-    /// From there: to the right along the row, towards the tip, to the upper side; in lengths of the midrib.
+    /// Offset from the nearest point: to the right along the row, towards the tip, to the upper side; in lengths of the
+    /// midrib.
     pub off: DVec3,
 }
 
-/// Why marks cannot make a leaf. Rows and marks are counted from 1, as in the file.
+/// Reason why marks cannot make a leaf. Rows and marks are counted from 1, as in the file.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MarksError {
-    /// Too few side veins.
+    /// There are too few side veins.
     #[error("{0} rows of marks are too few for a blade; measure at least 2 side veins")]
     TooFewRows(usize),
-    /// A coordinate is no usable number.
+    /// A coordinate is not a usable number.
     #[error("row {row}, mark {mark}: a coordinate is not a finite number; measure it again")]
     NotFinite {
         /// Row from 1; 0 for the tip.
@@ -89,7 +90,7 @@ pub enum MarksError {
         /// Mark from 1.
         mark: usize,
     },
-    /// A thickness is 0, negative or no number.
+    /// A thickness is 0, negative or not a number.
     #[error(
         "row {row}, mark {mark}: a thickness must be above 0, not {value}; leave it empty if it was not measured"
     )]
@@ -104,7 +105,7 @@ pub enum MarksError {
     /// All marks of a row are one point.
     #[error("row {0}: all marks are the same point; only the tip may be repeated, and before the first row")]
     Point(usize),
-    /// Two neighbouring rows share their place on the midrib.
+    /// Two neighbouring rows share their point on the midrib.
     #[error("rows {0} and {next}: both meet the midrib in the same point; was a row entered twice?", next = .0 + 1)]
     SameRow(usize),
     /// The first row starts at the tip.
@@ -112,47 +113,47 @@ pub enum MarksError {
         "row 1 meets the midrib at the tip; the tip is repeated, or row 1 is the tip itself: remove one of them"
     )]
     TipRepeated,
-    /// A ball to be moved that is not there.
+    /// The ball to be moved does not exist.
     #[error(
         "there is no control ball {mark} in row {row}: the leaf has rows 1 to {rows} of marks 1 to 7, and the tip as row 0"
     )]
     NoBall {
-        /// Row asked for.
+        /// The requested row.
         row: usize,
-        /// Mark asked for.
+        /// The requested mark.
         mark: usize,
-        /// Rows of the leaf.
+        /// Number of rows of the leaf.
         rows: usize,
     },
-    /// Too few points of the margin.
+    /// The margin has too few points.
     #[error("a margin of {0} points encloses nothing; give at least 3, or none")]
     MarginFew(usize),
-    /// A coordinate of the margin is no usable number.
+    /// A coordinate of the margin is not a usable number.
     #[error("margin, point {0}: a coordinate is not a finite number; measure it again")]
     MarginNotFinite(usize),
-    /// The margin is no simple line.
+    /// The margin crosses itself.
     #[error(
         "the margin crosses itself {0} times on the blade laid flat; give its points in order, once round the blade"
     )]
     MarginCrosses(usize),
-    /// The margin is somewhere else.
+    /// The margin does not enclose the middle of the midrib.
     #[error("the middle of the midrib does not lie within the margin; are both of one leaf, in one unit?")]
     MarginApart,
 }
 
-/// Thickness of a midrib at its base over its length, and at its tip over that at its base, where none was measured.
-/// Our own numbers, those of the leaves in `fixtures/leaves`.
+/// Assumed thickness of an unmeasured midrib at its base relative to its length, and at its tip relative to that at its
+/// base. Our own numbers, those of the leaves in `fixtures/leaves`.
 pub(crate) const MIDRIB_SHARE: [f64; 2] = [0.018, 0.08];
 
 impl Marks {
-    /// The length of the midrib by the chords of its marks, from the last row to the tip.
+    /// Returns the length of the midrib by the chords of its marks, from the last row to the tip.
     pub fn length(&self) -> f64 {
         let midrib = self.rows.iter().map(|r| r.points[MIDDLE]);
         let line: Vec<DVec3> = core::iter::once(self.tip).chain(midrib).collect();
         geom::polyline_length3(&line)
     }
 
-    /// All places scaled about the origin, thickness too.
+    /// Returns all points scaled about the origin, thickness too.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let rows = self.rows.iter().map(|r| MarkRow {
@@ -168,11 +169,11 @@ impl Marks {
         }
     }
 
-    /// Marks that lie much farther from their neighbours than marks do on this leaf: `(row, mark, times as far)`, both from
-    /// 1, row 0 for the tip.
+    /// Returns the marks that lie much farther from their neighbours than usual on this leaf, each as
+    /// `(row, mark, ratio to the usual distance)`, row and mark from 1, row 0 for the tip.
     ///
-    /// Compared is the distance from the nearest of the up to eight neighbours; 20 times the median is far. What is found may
-    /// be right all the same.
+    /// The measure is the distance to the nearest of the up to eight neighbours; 20 times the median is far. Such a
+    /// mark may still be right.
     pub fn strays(&self) -> Vec<(usize, usize, f64)> {
         let rows = self.rows.len();
         let nearest = |i: usize, j: usize| {
@@ -198,7 +199,7 @@ impl Marks {
         found.into_iter().map(|(i, j, d)| (i, j, d / median)).filter(|f| f.2 > 20.0).collect()
     }
 
-    /// Everything that is wrong with the places and thicknesses.
+    /// Iterates over all faults of the points and thicknesses.
     pub fn validate(&self) -> impl Iterator<Item = MarksError> + '_ {
         let usable = |p: DVec3| p.is_finite() && p.abs().max_element() < 1e100;
         let few = (self.rows.len() < 2).then_some(MarksError::TooFewRows(self.rows.len()));
@@ -229,17 +230,16 @@ impl Marks {
         few.into_iter().chain(tip).chain(tip_thickness).chain(rows).chain(start).chain(same)
     }
 
-    /// Fills in what was not measured.
+    /// Fills in missing measurements.
     ///
-    /// Along a side vein thickness runs evenly from the vein's own at the midrib to that of the margin (Wang et
-    /// al. 2011, section 1.3: `r2 = (2 d + r4) / 3`, `r3 = (d + 2 r4) / 3`), left as right. What a whole row lacks
-    /// is interpolated between its neighbours along the midrib. A midrib that was measured nowhere is 1.8 % of its length
-    /// thick at the base and a twelfth of that at the tip. A margin that was measured nowhere is 2.6 % of
-    /// the veins' mean thickness; side veins that were measured nowhere are half as thick as the midrib. Each
-    /// such guess is told in `report`.
+    /// Along a side vein thickness changes linearly from the vein's own at the midrib to that of the margin (Wang et
+    /// al. 2011, section 1.3: `r2 = (2 d + r4) / 3`, `r3 = (d + 2 r4) / 3`), left as right. Values that a whole row
+    /// lacks are interpolated between its neighbours along the midrib. An unmeasured midrib is 1.8 % of its length
+    /// thick at the base and a twelfth of that at the tip. An unmeasured margin is 2.6 % of the veins' mean thickness;
+    /// unmeasured side veins are half as thick as the midrib. Each such guess is reported in `report`.
     ///
     /// # Errors
-    /// The first of [`validate`](Self::validate); those of [`FullMarks::within`].
+    /// The first fault of [`validate`](Self::validate); those of [`FullMarks::within`].
     pub fn complete(&self, report: &mut Report) -> Result<FullMarks, MarksError> {
         if let Some(fault) = self.validate().next() {
             return Err(fault);
@@ -265,7 +265,7 @@ impl Marks {
         });
         let margin = |j: usize| -> Vec<Option<f64>> { self.rows.iter().map(|r| r.thickness[j]).collect() };
         let (right, left) = (margin(0), margin(MARKS_A_ROW - 1));
-        // Left as right where only one side was measured.
+        // The measured side serves for both if only one was measured.
         let either = |a: &[Option<f64>], b: &[Option<f64>]| -> Vec<Option<f64>> {
             a.iter().zip(b).map(|(a, b)| a.or(*b)).collect()
         };
@@ -298,7 +298,7 @@ impl Marks {
         FullMarks { rows, tip: self.tip, tip_thickness, margin: Vec::new() }.within(&self.margin)
     }
 
-    /// Where the rows meet the midrib, by length from the tip.
+    /// Returns the positions of the rows on the midrib, by length from the tip.
     fn places(&self) -> Vec<f64> {
         let mut last = self.tip;
         let mut sum = 0.0;
@@ -311,7 +311,7 @@ impl Marks {
     }
 }
 
-/// Known values kept, others interpolated between the nearest known ones, beyond them constant.
+/// Keeps known values, interpolates between the nearest known ones, and extends them as constants.
 pub(crate) fn spread(places: &[f64], values: &[Option<f64>]) -> Option<Vec<f64>> {
     let known: Vec<(f64, f64)> = places.iter().zip(values).filter_map(|(&p, v)| Some((p, (*v)?))).collect();
     let (&first, &last) = (known.first()?, known.last()?);
@@ -327,7 +327,7 @@ pub(crate) fn spread(places: &[f64], values: &[Option<f64>]) -> Option<Vec<f64>>
 }
 
 impl FullMarks {
-    /// The marks as measured ones, all thickness known.
+    /// Returns the marks as measured ones, with all thicknesses known.
     pub fn to_marks(&self) -> Marks {
         let rows = self.rows.iter().map(|r| MarkRow {
             points: r.points,
@@ -338,19 +338,19 @@ impl FullMarks {
         Marks { rows: rows.collect(), tip: self.tip, tip_thickness: Some(self.tip_thickness), margin }
     }
 
-    /// All points scaled about the root, thickness too.
+    /// Returns all points scaled about the root, thickness too.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let root = self.root();
         self.map(|p| root + (p - root) * factor, |t| t * factor)
     }
 
-    /// The lower end of the midrib: the fourth mark of the last row.
+    /// Returns the lower end of the midrib: the fourth mark of the last row.
     pub fn root(&self) -> DVec3 {
         self.rows.last().map_or(self.tip, |r| r.points[MIDDLE])
     }
 
-    /// Every point and every thickness put through a function, which turns, shifts and scales; the margin goes with them.
+    /// Applies a similarity transformation to every point and every thickness; the margin follows.
     #[must_use]
     pub fn map(&self, point: impl Fn(DVec3) -> DVec3, thickness: impl Fn(f64) -> f64) -> Self {
         let rows = self.rows.iter().map(|r| FullRow {
@@ -363,7 +363,7 @@ impl FullMarks {
         Self { rows, tip, tip_thickness, margin: self.margin.clone() }
     }
 
-    /// Points of the midrib from root to tip.
+    /// Returns the points of the midrib from root to tip.
     pub fn midrib(&self) -> Vec<DVec3> {
         self.rows.iter().rev().map(|r| r.points[MIDDLE]).chain([self.tip]).collect()
     }
@@ -373,7 +373,7 @@ impl FullMarks {
 pub(crate) mod tests {
     use super::*;
 
-    /// A flat leaf along +y, x across (mark 1 at +x), side veins rising.
+    /// Makes a flat leaf along +y, x across (mark 1 at +x), side veins rising.
     pub(crate) fn sample(rows: usize) -> Marks {
         let row = |i: usize| {
             let y = (rows - 1 - i) as f64 / rows as f64;

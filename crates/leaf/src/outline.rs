@@ -1,4 +1,4 @@
-//! The margin that a network of veins shows: as close round the veins as their meshes let it be.
+//! The margin around a network of veins: as close around the veins as their meshes allow.
 
 use base::Report;
 use geom::{AlphaShape, KdTree2};
@@ -6,23 +6,24 @@ use glam::DVec2;
 
 use crate::graph::{GraphError, Net, VeinGraph};
 
-/// Veins are points in these steps of the median vein between two nodes.
+/// Spacing of the points that stand for a vein between two nodes, in widths of the median vein.
 const STEP: f64 = 0.5;
-/// Each closeness that is tried is so much wider than the one before.
+/// Ratio of successive radii of the alpha shape that are tried.
 const WIDER: f64 = 1.15;
-/// The first that leaves this share of the nodes out, at most, and this share of the area open in meshes of the network.
+/// Most nodes that a margin may exclude, as a share of all: the first radius that satisfies this is taken.
 const LEFT_OUT: f64 = 0.005;
+/// Most area that may stay open in meshes of the network, as a share of the whole.
 const OPEN: f64 = 0.002;
-/// No margin is looser than with bays as wide as this share of the leaf's length.
+/// Widest bay of a margin, as a share of the leaf's length.
 const WIDEST: f64 = 0.25;
-/// A point of the margin may be left out if the line stays within this share of the median vein's radius.
+/// Tolerance for leaving out points of the margin, as a share of the median vein's radius.
 const EVEN: f64 = 0.5;
-/// Corners are not drawn out farther than this many radii.
+/// Longest extension of a corner, in radii.
 const MITRE: f64 = 2.5;
 
 impl VeinGraph {
-    /// The margin that the largest connected piece of the network shows, counter-clockwise, in the network's own places; `None`
-    /// if it shows none. It is that of [`marks`](Self::marks).
+    /// Returns the margin around the largest connected piece of the network, counter-clockwise, in the network's own
+    /// coordinates; `None` if there is none. It is that of [`marks`](Self::marks).
     ///
     /// # Errors
     /// [`GraphError`].
@@ -31,12 +32,12 @@ impl VeinGraph {
         Ok(self.outline(&net.members))
     }
 
-    /// The margin of the leaf, counter-clockwise, a vein's radius outside the outermost veins: an alpha shape (Edelsbrunner,
-    /// Kirkpatrick and Seidel 1983) of the veins.
+    /// Returns the margin of the leaf, counter-clockwise, a vein's radius outside the outermost veins: an alpha shape
+    /// (Edelsbrunner, Kirkpatrick and Seidel 1983) of the veins.
     ///
-    /// `members` are the nodes that it must go round. Its closeness is the tightest at which it goes round all but 0.5 % of
-    /// them in one piece, with the network's own meshes closed. `None` if there is none: for networks without area.
-    /// Cost: n log n, some thirty times.
+    /// `members` are the nodes to enclose. The radius is the smallest at which the shape encloses all but 0.5 % of them
+    /// in one piece, with the network's own meshes closed. `None` if there is none: for networks without area. Cost: n
+    /// log n, some thirty times.
     pub(crate) fn outline(&self, members: &[u32]) -> Option<Vec<DVec2>> {
         let at = |k: u32| self.nodes.get(k as usize).copied();
         let mut lengths: Vec<f64> = self
@@ -47,13 +48,13 @@ impl VeinGraph {
             .collect();
         base::sort_numbers(&mut lengths);
         let step = STEP * lengths.get(lengths.len() / 2)?;
-        // Of each point the radius of its vein.
+        // The radius of the vein at each point.
         let mut points = self.nodes.clone();
         let mut radii = self.radii.clone();
         for &[a, b] in &self.edges {
             let (p, q) = (at(a)?, at(b)?);
             let (r, s) = (self.radii.get(a as usize)?, self.radii.get(b as usize)?);
-            // 64: a vein that long has no bay beside it that is as narrow.
+            // 64: a vein of that length has no bay next to it that is this narrow.
             let parts = (p.distance(q) / step).ceil().clamp(1.0, 64.0);
             let mut k = 1.0;
             while k < parts {
@@ -95,7 +96,7 @@ impl VeinGraph {
     }
 }
 
-/// A closed counter-clockwise line moved outwards, each point by its radius.
+/// Moves a closed counter-clockwise line outwards, each point by its radius.
 fn grown(line: &[(DVec2, f64)]) -> Vec<DVec2> {
     let n = line.len();
     let own: Vec<DVec2> = line.iter().map(|l| l.0).collect();
@@ -107,7 +108,7 @@ fn grown(line: &[(DVec2, f64)]) -> Vec<DVec2> {
         let (a, b) = (out(before, p), out(p, after));
         let Some(middle) = (a + b).try_normalize() else { return p };
         let far = (r / middle.dot(a).max(1.0 / MITRE)).min(MITRE * r);
-        // In a narrow bay there is no room for more than a third of it.
+        // In a narrow bay there is room for only a third of it.
         let mut near = Vec::new();
         around.within(p + middle * far, far, &mut near);
         let free = near.iter().all(|&j| [0, 1, n - 1].contains(&((j + n - k) % n)));

@@ -1,6 +1,6 @@
 //! A vein graph whose chief veins start together -> [`Rays`].
 //!
-//! largest piece -> hub where thick veins part -> chief veins -> margin between them -> rays
+//! largest piece -> hub from which thick veins part -> chief veins -> margin between them -> rays
 
 use base::{Report, ops};
 use glam::{DVec2, DVec3};
@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::graph::{GraphError, Net, VeinGraph, median_near, trace};
 use crate::rays::{ChiefVein, Rays};
 
-/// Marks on each ray, the base counted.
+/// Marks on each ray, including the base.
 const MARKS: usize = 9;
 /// Rays between two chief veins.
 const BETWEEN: usize = 7;
@@ -17,15 +17,15 @@ const OUTER: usize = 5;
 
 /// A thick vein that leaves the hub.
 struct Chief {
-    /// Where it ends.
+    /// Node at its end.
     tip: u32,
-    /// Mean radius where it leaves.
+    /// Mean radius at its start.
     radius: f64,
     /// Angle of its tip at the hub, anticlockwise from +x.
     angle: f64,
 }
 
-/// A place where thick veins part, and the cheapest ways from there.
+/// A hub from which thick veins part, and the cheapest paths from there.
 struct Hub {
     at: DVec2,
     before: Vec<u32>,
@@ -35,13 +35,14 @@ struct Hub {
 }
 
 impl VeinGraph {
-    /// The chief veins and the margin of a palmate leaf; `None` if the network has one midrib ([`VeinGraph::marks`]).
+    /// Returns the chief veins and the margin of a palmate leaf; `None` if the network has one midrib
+    /// ([`VeinGraph::marks`]).
     ///
-    /// Palmate is: three or more veins leave one place, the outer ones at least a third as thick and as long as the
-    /// thickest, those beside the middle one half as long as it, the middle one among the thickest, and nothing but a
-    /// stalk on the other side. Between chief veins the blade reaches as far as the network does. The middle vein
-    /// stands upright, base at the origin. Not kept: the small veins. Cost: n log n in the nodes, for at most 25
-    /// places.
+    /// A leaf is palmate if three or more veins leave one point, the outer ones at least a third as thick and as long
+    /// as the thickest, those next to the middle one half as long as it, the middle one among the thickest, and nothing
+    /// but a stalk on the opposite side. Between chief veins the blade reaches as far as the network does. The middle
+    /// vein stands upright, base at the origin. Not kept: the small veins. Cost: n log n in the nodes, for at most 25
+    /// points.
     ///
     /// # Errors
     /// [`GraphError`].
@@ -63,14 +64,14 @@ impl VeinGraph {
     }
 }
 
-/// The veins that leave `centre`, if they are those of a palmate leaf.
+/// Returns the veins that leave `centre`, if they are those of a palmate leaf.
 fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
-    let at = net.at(centre);
-    let far = |k: u32| net.at(k).distance(at);
+    let at = net.node_position(centre);
+    let far = |k: u32| net.node_position(k).distance(at);
     let reach = net.members.iter().map(|&k| far(k)).fold(0.0, f64::max);
     let near = 0.12 * reach;
     let (cost, before) = net.ways(&[centre]);
-    // Every node beyond the circle belongs to the first node outside it on its way; nearer nodes come first.
+    // Every node beyond the circle belongs to the first node outside it on its path; nearer nodes come first.
     let mut order = net.members.clone();
     base::sort_by(&mut order, |&a, &b| cost[a as usize].total_cmp(&cost[b as usize]).then(a.cmp(&b)));
     let mut gate = vec![u32::MAX; before.len()];
@@ -114,7 +115,7 @@ fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
             .map(|&k| net.radius(k))
             .collect();
         let radius = ring.iter().sum::<f64>() / ring.len().max(1) as f64;
-        let d = net.at(end) - at;
+        let d = net.node_position(end) - at;
         chiefs.push(Chief { tip: end, radius, angle: ops::atan2(d.y, d.x) });
     }
     let widest = chiefs.iter().map(|c| c.radius).fold(0.0, f64::max);
@@ -124,7 +125,7 @@ fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
         return None;
     }
     base::sort_by(&mut chiefs, |a, b| a.angle.total_cmp(&b.angle));
-    // The widest gap is where the stalk comes in: the order begins after it.
+    // The stalk enters in the widest gap: the order begins after it.
     let n = chiefs.len();
     let gap = |i: usize| {
         let d = chiefs[(i + 1) % n].angle - chiefs[i].angle;
@@ -136,16 +137,17 @@ fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
         return None;
     }
     chiefs.rotate_left((widest_gap + 1) % n);
-    // On a midrib that goes on both ways the vein opposite to the gap is a side vein.
+    // On a midrib that continues in both directions the vein opposite to the gap is a side vein.
     let middle = chiefs.get(n / 2).filter(|c| c.radius >= 0.75 * widest)?;
-    // The basal pair of side veins of a leaf with a midrib is short; the lobes beside the middle one are not.
+    // The basal pair of side veins of a leaf with a midrib is short; the lobes next to the middle one are not.
     let m = n / 2;
     let neighbours = [m.checked_sub(1).and_then(|i| chiefs.get(i)), chiefs.get(m + 1)];
     let long = |c: Option<&Chief>, share: f64| c.is_some_and(|c| far(c.tip) >= share * far(middle.tip));
     if far(middle.tip) < 0.7 * longest || !neighbours.into_iter().all(|c| long(c, 0.5)) {
         return None;
     }
-    // Nothing goes back beside the stalk, and the sides are alike: a midrib that goes on both ways is neither.
+    // No vein goes back next to the stalk, and the sides are alike; neither holds for a midrib that continues in both
+    // directions.
     let spread =
         [chiefs.first(), chiefs.last()].map(|c| c.map_or(0.0, |c| wrapped(c.angle - middle.angle).abs()));
     let [narrow, wide] = [spread[0].min(spread[1]), spread[0].max(spread[1])];
@@ -155,13 +157,13 @@ fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
     Some(Hub { at, before, chiefs, stalk })
 }
 
-/// An angle in (-pi, pi].
+/// Returns an angle in (-pi, pi].
 fn wrapped(angle: f64) -> f64 {
     let turned = (angle + ops::PI).rem_euclid(ops::TAU);
     turned - ops::PI
 }
 
-/// Places and thickness along a chief vein, at even lengths, in the hub's frame as angle (right is positive) and
+/// Positions and thickness along a chief vein, at even lengths, in the hub's frame as angle (right is positive) and
 /// distance.
 struct Line {
     angle: [f64; MARKS],
@@ -178,15 +180,15 @@ fn rays_of(net: &Net<'_>, hub: &Hub) -> Rays {
     };
     let line = |c: &Chief| {
         let way = trace(&hub.before, c.tip);
-        let points: Vec<DVec2> = way.iter().map(|&k| net.at(k)).collect();
+        let points: Vec<DVec2> = way.iter().map(|&k| net.node_position(k)).collect();
         let radii: Vec<f64> = way.iter().map(|&k| net.radius(k)).collect();
         let total = geom::polyline_length(&points);
         let mut out = Line { angle: [0.0; MARKS], far: [0.0; MARKS], thickness: [0.0; MARKS] };
-        let end = polar(net.at(c.tip)).0;
+        let end = polar(net.node_position(c.tip)).0;
         for m in 0..MARKS {
             let (p, node) = crate::graph::along(&points, total * m as f64 / (MARKS - 1) as f64);
             let (angle, far) = polar(p);
-            // Near the hub an angle says nothing, and a turn of pi is none.
+            // Near the hub an angle is meaningless, and a turn of pi is not real.
             out.angle[m] = if m == 0 { end } else { end + wrapped(angle - end) };
             out.far[m] = far;
             out.thickness[m] = 2.0 * median_near(&radii, node);
@@ -200,11 +202,11 @@ fn rays_of(net: &Net<'_>, hub: &Hub) -> Rays {
         .members
         .iter()
         .filter(|&&k| !hub.stalk[k as usize])
-        .map(|&k| polar(net.at(k)))
+        .map(|&k| polar(net.node_position(k)))
         .filter(|p| p.1 > 0.0)
         .collect();
     let longest = all.iter().map(|p| p.1).fold(0.0, f64::max);
-    // How far the network reaches about an angle.
+    // Reach of the network about an angle.
     let margin = |angle: f64, half: f64| {
         let within = all.iter().filter(|p| wrapped(p.0 - angle).abs() <= half).map(|p| p.1);
         within.fold(0.0, f64::max).max(0.05 * longest)
@@ -269,7 +271,7 @@ mod tests {
     use crate::graph::index;
     use crate::{PalmateSpec, RayLeaf, ThicknessRule};
 
-    /// The network of a made palmate leaf: chief veins, the side veins of their lobes, twigs of these, a stalk.
+    /// Makes the network of a palmate leaf: chief veins, the side veins of their lobes, twigs of these, a stalk.
     fn network(veins: u32, turn: f64, stalk: bool) -> VeinGraph {
         let rays = Rays::palmate(&PalmateSpec { veins, ..PalmateSpec::default() });
         let mut leaf = RayLeaf::new(&rays, ThicknessRule::Diameter).unwrap();

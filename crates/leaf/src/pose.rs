@@ -1,4 +1,4 @@
-//! Curl and wilt: a leaf's marks moved as a living leaf moves.
+//! Curl and wilt: a leaf's marks moved as in a living leaf.
 
 use base::ops::{self, smoothstep};
 use base::turn;
@@ -7,18 +7,18 @@ use glam::{DQuat, DVec3};
 use crate::marks::{FullMarks, FullRow, MARKS_A_ROW};
 use crate::rays::Rays;
 
-/// How a leaf is bent from the shape in which it was measured.
+/// Bending of a leaf from its measured shape.
 ///
-/// Guaranteed: distances between neighbouring marks along the midrib and along the side veins stay, and (0, 0) changes
-/// nothing. A blade hardly stretches: it bends as a sheet of paper does, so that its area stays within 2 % on the
+/// Guaranteed: distances between neighbouring marks along the midrib and along the side veins are kept, and (0, 0)
+/// changes nothing. A blade hardly stretches: it bends like a sheet of paper, so that its area stays within 2 % on the
 /// leaves that were tried (docs/leaves.md). Not guaranteed: that a blade that was measured with folds can bend so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Roll of the blade about its midrib: 0 as measured, 1 margins meet above the upper side, -1 below.
+    /// Roll of the blade about its midrib: 0 as measured, at 1 the margins meet above the upper side, at -1 below.
     pub curl: f64,
     /// Loss of stiffness: 0 fresh, 1 hanging limp, halves folded down.
     pub wilt: f64,
-    /// Where a limp leaf hangs to.
+    /// Direction in which a limp leaf hangs.
     pub down: DVec3,
 }
 
@@ -32,13 +32,13 @@ impl Default for Pose {
 const FULL_CURL: f64 = ops::PI;
 // 55 degrees: the halves of a limp tobacco leaf hang like a roof, not like a closed book.
 const FULL_FOLD: f64 = 55.0 / 180.0 * ops::PI;
-// Rounds in which distances between marks are brought back; more change nothing that can be seen.
+// Rounds that restore the distances between marks; more make no visible difference.
 const ROUNDS: u32 = 600;
 
 const MIDDLE: usize = MARKS_A_ROW / 2;
 
 impl Pose {
-    /// The marks in this pose; the root stays where it is.
+    /// Returns the marks in this pose; the root stays in place.
     ///
     /// Values beyond -1 to 1 (wilt: 0 to 1) are clamped, NaN counts as 0. Cost: linear.
     pub fn apply(&self, marks: &FullMarks) -> FullMarks {
@@ -46,7 +46,7 @@ impl Pose {
         let line = marks.midrib();
         // Rows from the root up; the last of `line` is the tip.
         let rows: Vec<&FullRow> = marks.rows.iter().rev().collect();
-        let mut grid = Grid::of(rows.iter().map(|r| r.points.to_vec()).collect(), (marks.tip, true));
+        let mut grid = Grid::from_rows(rows.iter().map(|r| r.points.to_vec()).collect(), (marks.tip, true));
         for (i, row) in rows.iter().enumerate() {
             let step = line[i + 1] - line[i];
             let before = if i == 0 { step } else { line[i] - line[i - 1] };
@@ -69,7 +69,7 @@ impl Pose {
         FullMarks { rows: out, tip, ..marks.clone() }
     }
 
-    /// As [`apply`](Self::apply), of chief veins that start together: the middle one is what the blade rolls about.
+    /// As [`apply`](Self::apply), for chief veins that start together: the blade rolls about the middle one.
     pub fn apply_rays(&self, rays: &Rays) -> Rays {
         let Some((curl, wilt, down)) = self.asked() else { return rays.clone() };
         let middle = rays.rays.len() / 2;
@@ -93,16 +93,16 @@ impl Pose {
         let wide = wide.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         // Columns are rays, rows the marks from the base outwards.
         let rows = (0..marks).map(|m| rays.rays.iter().map(|r| r.points[m]).collect()).collect();
-        let mut grid = Grid::of(rows, (end, false));
+        let mut grid = Grid::from_rows(rows, (end, false));
         let bend = curl * FULL_CURL / wide;
         for p in &mut grid.points {
             let (d, h, y) = ((*p - root).dot(across), (*p - root).dot(up), (*p - root).dot(axis));
-            // On a cylinder about a line along the midrib: as far round it as it was across. That stretches nothing.
+            // On a cylinder about a line along the midrib: as far round it as it was across. This is an isometry.
             let (s, c) = ops::sin_cos(bend * d);
             let [x, z] = if bend.abs() > 1e-9 { [s / bend, (1.0 - c) / bend] } else { [d, 0.0] };
             *p = root + axis * y + across * (x - h * s) + up * (z + h * c);
         }
-        // What lies off the plane of the leaf was stretched.
+        // Parts off the plane of the leaf were stretched.
         if curl != 0.0 {
             grid.relax();
         }
@@ -118,7 +118,7 @@ impl Pose {
         out
     }
 
-    /// Curl, wilt and the way down; none where nothing is asked.
+    /// Returns curl, wilt and the direction down; `None` if neither curl nor wilt is set.
     fn asked(&self) -> Option<(f64, f64, DVec3)> {
         let clean = |x: f64, lo: f64| if x.is_nan() { 0.0 } else { x.clamp(lo, 1.0) };
         let (curl, wilt) = (clean(self.curl, -1.0), clean(self.wilt, 0.0));
@@ -127,20 +127,21 @@ impl Pose {
     }
 }
 
-/// Marks in rows, as they are and as they were.
+/// Marks in rows, in their current and former positions.
 struct Grid {
     columns: usize,
     points: Vec<DVec3>,
-    /// Distances that a sheet keeps: to the neighbours along, across and aslant.
+    /// Distances that a sheet preserves: to the neighbours along, across and diagonal.
     edges: Vec<(usize, usize, f64)>,
-    /// Of rows alone, from the middle outwards.
+    /// Distances within rows, from the middle outwards.
     chains: Vec<(usize, usize, f64)>,
     pinned: Vec<bool>,
 }
 
 impl Grid {
-    /// Rows of one length, and the tip behind them, in which they end if they are joined; the middle of each row and the tip stay where they are put.
-    fn of(rows: Vec<Vec<DVec3>>, (tip, joined): (DVec3, bool)) -> Self {
+    /// Makes a grid of rows of one length, followed by the tip, in which they end if they are joined; the middle of
+    /// each row and the tip stay in place.
+    fn from_rows(rows: Vec<Vec<DVec3>>, (tip, joined): (DVec3, bool)) -> Self {
         let columns = rows.first().map_or(1, Vec::len);
         let (n, middle) = (rows.len(), columns / 2);
         let mut points: Vec<DVec3> = rows.into_iter().flatten().collect();
@@ -173,7 +174,7 @@ impl Grid {
         Self { columns, points, edges, chains, pinned }
     }
 
-    /// Brings distances between neighbours back to what they were, each pair in turn.
+    /// Restores the distances between neighbours, each pair in turn.
     fn relax(&mut self) {
         for _ in 0..ROUNDS {
             for &(a, b, rest) in &self.edges {
@@ -190,7 +191,7 @@ impl Grid {
         }
     }
 
-    /// Side veins as long as they were, from the midrib outwards.
+    /// Restores the lengths of side veins, from the midrib outwards.
     fn keep_rows(&mut self) {
         let before = self.points.clone();
         for &(a, b, rest) in &self.chains {
@@ -200,24 +201,25 @@ impl Grid {
     }
 }
 
-/// The turn of a direction at a share of the way from the root to the tip: towards down, more the farther out.
+/// Returns the rotation of a direction at a share of the path from the root to the tip: towards down, more the farther
+/// out.
 fn sag(direction: DVec3, down: DVec3, share: f64, wilt: f64) -> DQuat {
     let Some(from) = direction.try_normalize() else { return DQuat::IDENTITY };
-    // The stalk holds; from there to the middle the midrib gives way.
+    // The stalk holds; from there to the middle the midrib yields.
     let part = wilt * smoothstep(-0.05, 0.55, share);
     let axis = from.cross(down);
     let angle = ops::atan2(axis.length(), from.dot(down));
     match axis.try_normalize() {
         Some(axis) => turn::about(axis, angle * part),
-        // Straight up or down: nothing says to which side it falls.
+        // Straight up or down: the direction of the fall is undefined.
         None => DQuat::IDENTITY,
     }
 }
 
-/// Bends a blade with its midrib: what lies beside a place of the midrib goes with that place, wherever its vein began.
+/// Bends a blade with its midrib: points next to a place of the midrib move with that place, wherever their vein began.
 fn hang(points: &mut [DVec3], line: &[DVec3], down: DVec3, wilt: f64) {
     let length = geom::polyline_length3(line).max(f64::MIN_POSITIVE);
-    // The midrib as it hangs, and the turn of each of its pieces.
+    // The hanging midrib, and the rotation of each of its pieces.
     let mut place = line[0];
     let (mut hung, mut turns, mut walked) = (vec![place], Vec::new(), vec![0.0]);
     for w in line.windows(2) {
@@ -230,11 +232,11 @@ fn hang(points: &mut [DVec3], line: &[DVec3], down: DVec3, wilt: f64) {
         walked.push(along + step.length());
     }
     for p in points.iter_mut() {
-        // The piece that it lies beside.
+        // The piece that the point lies next to.
         let beside = |k: usize| {
             let (a, step) = (line[k], line[k + 1] - line[k]);
             let t = (*p - a).dot(step) / step.length_squared().max(f64::MIN_POSITIVE);
-            // Before the first and behind the last piece it goes on straight.
+            // Before the first and behind the last piece it continues straight.
             let low = if k == 0 { f64::NEG_INFINITY } else { 0.0 };
             let high = if k + 2 == line.len() { f64::INFINITY } else { 1.0 };
             let t = t.clamp(low, high);
@@ -249,7 +251,7 @@ fn hang(points: &mut [DVec3], line: &[DVec3], down: DVec3, wilt: f64) {
     }
 }
 
-/// One row, each half turned about the midrib's direction `axis`.
+/// Poses one row, each half turned about the midrib's direction `axis`.
 fn pose_row(row: &FullRow, axis: DVec3, [curl, wilt]: [f64; 2]) -> [DVec3; MARKS_A_ROW] {
     let mut points = row.points;
     let halves = [(0..MIDDLE).rev().collect::<Vec<_>>(), (MIDDLE + 1..MARKS_A_ROW).collect()];
@@ -330,7 +332,7 @@ mod tests {
         }
     }
 
-    /// Area of the surface through the marks, as it is meshed.
+    /// Returns the area of the surface through the marks, as it is meshed.
     fn area(marks: &FullMarks) -> f64 {
         crate::Leaf::new(marks, &crate::LeafSpec::default()).unwrap().blade().area_m2()
     }
@@ -364,7 +366,7 @@ mod tests {
             for (curl, wilt) in [(0.4, 0.0), (1.0, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, 1.0)] {
                 let bent = Pose { curl, wilt, ..Pose::default() }.apply_rays(&rays);
                 let change = 100.0 * (area(&bent) / before - 1.0);
-                // Drooping lobes do not lie in a plane: rolled up or hung all the way they stretch a little more.
+                // Drooping lobes do not lie in a plane: fully rolled up or hanging they stretch slightly more.
                 let most = if !(0.0..=0.9).contains(&curl) {
                     3.5
                 } else if wilt > 0.9 {

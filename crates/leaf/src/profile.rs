@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::rays::Rays;
 
-/// A midrib as it is seen from the side, and the width of the blade along it, as leaves of grasses are digitised
-/// (Prevot, Aries and Monestiez 1991).
+/// A midrib seen from the side, and the width of the blade along it, as leaves of grasses are digitised (Prevot, Aries
+/// and Monestiez 1991).
 ///
 /// ```
 /// use glam::DVec2;
@@ -23,35 +23,36 @@ pub struct LeafProfile {
     pub width: Vec<(f64, f64)>,
 }
 
-/// Why a profile makes no leaf.
+/// Reason why a profile makes no leaf.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProfileError {
-    /// Too few points, or all in one place.
+    /// There are too few distinct points.
     #[error("the midrib has {0} points that differ; at least 2 are needed")]
     Midrib(usize),
-    /// Too few widths, or none above 0.
+    /// There are too few widths, or none above 0.
     #[error("the blade has {0} widths above 0; at least 1 is needed, and 2 places along the midrib")]
     Width(usize),
-    /// Places along the midrib that do not rise, a negative width, or no number.
+    /// Positions along the midrib do not rise, or a width is negative or not a number.
     #[error(
         "width {0}: places along the midrib must rise and be finite, and widths be 0 or more; measure it again"
     )]
     Order(usize),
 }
 
-/// No narrower than this share of the widest place: veins do not meet in a point.
+/// Least width as a share of the greatest: veins do not meet in a point.
 const LEAST_WIDTH: f64 = 0.01;
-/// As many as [`crate::ParallelSpec`] has.
+/// Number of veins, as in [`crate::ParallelSpec`].
 const VEINS: u32 = 9;
 
 impl LeafProfile {
-    /// A flat blade across the midrib with parallel veins, nine and the margins, through `marks` (3 or more) even lengths.
+    /// Makes a flat blade across the midrib with parallel veins, nine and the margins, through `marks` (3 or more) even
+    /// lengths.
     ///
-    /// The midrib lies in the plane z = 0; seen on its upper side with the tip up the right margin is at +z. Places of
-    /// widths are taken in proportion where their whole is not the midrib's length (widths are measured on the leaf laid
-    /// flat, midribs on a picture). Number and thickness of the veins are those of [`Rays::parallel`], not measured. What a
-    /// profile does not hold is not made up: the blade has no keel, and its margins do not wave.
+    /// The midrib lies in the plane z = 0; seen on its upper side with the tip up, the right margin is at +z. Positions
+    /// of widths are scaled if their total is not the midrib's length (widths are measured on the leaf laid flat,
+    /// midribs on a picture). Number and thickness of the veins are those of [`Rays::parallel`], not measured. Nothing
+    /// is invented beyond the profile: the blade has no keel, and its margins do not wave.
     ///
     /// # Errors
     /// [`ProfileError`].
@@ -79,21 +80,22 @@ impl LeafProfile {
         let marks = marks.max(3);
         let place = |share: f64, across: f64| {
             let half = 0.5 * self.width_at(from + share * (to - from)).max(LEAST_WIDTH * widest);
-            self.at(share * length).extend(across * half)
+            self.midrib_point(share * length).extend(across * half)
         };
         Ok(Rays::side_by_side(VEINS, marks, 0.5 * widest, place))
     }
 
-    /// By how much [`rays`](Self::rays) stretches the places of the widths, so that their whole is the midrib's length: 1 where the
-    /// two agree. The area grows by as much. Not finite, or 0, for what makes no leaf.
+    /// Returns the factor by which [`rays`](Self::rays) stretches the positions of the widths, so that their total is
+    /// the midrib's length: 1 where the two agree. The area grows by the same factor. Not finite, or 0, if the profile
+    /// makes no leaf.
     pub fn stretch(&self) -> f64 {
         let line: Vec<DVec3> = self.midrib.iter().map(|p| p.extend(0.0)).collect();
         let span = self.width.last().zip(self.width.first()).map_or(0.0, |(last, first)| last.0 - first.0);
         geom::polyline_length3(&line) / span
     }
 
-    /// The point of the midrib at `s` from its base.
-    fn at(&self, s: f64) -> DVec2 {
+    /// Returns the point of the midrib at `s` from its base.
+    fn midrib_point(&self, s: f64) -> DVec2 {
         crate::graph::along(&self.midrib, s).0
     }
 
@@ -121,7 +123,7 @@ mod tests {
         assert_eq!(rays.validate().next(), None);
         assert_eq!((rays.rays.len(), rays.rays.iter().filter(|r| r.is_vein()).count()), (11, 9));
         assert!((rays.length() - 0.7).abs() < 1e-12);
-        // The fifth place of eight is 0.4 along the midrib, in the bend's second leg.
+        // The fifth of eight points is 0.4 along the midrib, in the second leg of the bend.
         let across: Vec<DVec3> = rays.rays.iter().map(|r| r.points[4]).collect();
         assert!((across[5] - DVec3::new(0.1, 0.3, 0.0)).length() < 1e-12, "{across:?}");
         let want = 0.06 * (0.7 - 0.4) / 0.35;

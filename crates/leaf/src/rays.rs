@@ -11,90 +11,90 @@ use crate::thickness::ThicknessRule;
 
 /// Lines of marks that all run from the base of the leaf towards its margin.
 ///
-/// A ray with thickness is a vein, one without only says where the blade is: a notch between lobes, or a margin.
-/// Guaranteed of the constructors: the same marks on every ray, first and last ray on the margin.
+/// A ray with thickness is a vein, one without only marks the position of the blade: a notch between lobes, or a
+/// margin. Guaranteed by the constructors: the same marks on every ray, first and last ray on the margin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rays {
-    /// The rays from right to left as one looks at the upper side with the tip up, at least 3.
+    /// The rays from right to left seen on the upper side with the tip up, at least 3.
     pub rays: Vec<ChiefVein>,
 }
 
 /// One line of marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChiefVein {
-    /// Places from the base outwards, metres; as many as on every other ray, at least 3.
+    /// Points from the base outwards, metres; as many as on every other ray, at least 3.
     pub points: Vec<DVec3>,
-    /// Thickness of the vein at each place, metres, above 0; all `None` where there is no vein.
+    /// Thickness of the vein at each point, metres, above 0; all `None` if the ray is not a vein.
     pub thickness: Vec<Option<f64>>,
 }
 
-/// Why rays cannot make a leaf. Rays and marks are counted from 1, as in the file.
+/// Reason why rays cannot make a leaf. Rays and marks are counted from 1, as in the file.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RaysError {
-    /// Too few rays or marks for a surface.
+    /// There are too few rays or marks for a surface.
     #[error(
         "{rays} veins of {marks} marks are too few for a blade; it needs 3 lines of 3 marks, margins counted"
     )]
     TooFew {
-        /// Rays given.
+        /// Number of rays.
         rays: usize,
-        /// Marks on the first.
+        /// Number of marks on the first ray.
         marks: usize,
     },
-    /// Rays of unlike length.
+    /// Rays have different numbers of marks.
     #[error("vein {ray} has {got} marks, vein 1 has {wanted}; put as many on each")]
     Unequal {
-        /// Chief vein from 1.
+        /// Number of the chief vein, from 1.
         ray: usize,
-        /// Its marks.
+        /// Number of its marks.
         got: usize,
-        /// Marks of the first.
+        /// Number of marks on the first.
         wanted: usize,
     },
-    /// A coordinate is no usable number.
+    /// A coordinate is not a usable number.
     #[error("vein {ray}, mark {mark}: a coordinate is not a finite number; measure it again")]
     NotFinite {
-        /// Chief vein from 1.
+        /// Number of the chief vein, from 1.
         ray: usize,
-        /// Mark from 1.
+        /// Number of the mark, from 1.
         mark: usize,
     },
-    /// A thickness is 0, negative or no number.
+    /// A thickness is 0, negative or not a number.
     #[error(
         "vein {ray}, mark {mark}: a thickness must be above 0, not {value}; leave it empty if it was not measured"
     )]
     Thickness {
-        /// Chief vein from 1.
+        /// Number of the chief vein, from 1.
         ray: usize,
-        /// Mark from 1.
+        /// Number of the mark, from 1.
         mark: usize,
         /// The value given, metres.
         value: f64,
     },
-    /// Two marks that follow one another are one place.
+    /// Two consecutive marks coincide.
     #[error("vein {ray}: marks {mark} and {next} are the same point; remove one of them", next = .mark + 1)]
     Repeated {
-        /// Chief vein from 1.
+        /// Number of the chief vein, from 1.
         ray: usize,
-        /// First of the two marks, from 1.
+        /// Number of the first of the two marks, from 1.
         mark: usize,
     },
-    /// A ball to be moved that is not there.
+    /// The ball to be moved does not exist.
     #[error(
         "there is no control ball {mark} on vein {ray}: the leaf has veins 1 to {rays} of marks 1 to {marks}"
     )]
     NoBall {
-        /// Chief vein asked for.
+        /// The requested chief vein.
         ray: usize,
-        /// Mark asked for.
+        /// The requested mark.
         mark: usize,
-        /// Veins of the leaf.
+        /// Number of veins of the leaf.
         rays: usize,
-        /// Marks of each.
+        /// Number of marks on each.
         marks: usize,
     },
-    /// No thickness anywhere.
+    /// No vein has a thickness.
     #[error("no vein has a thickness; measure it on at least one")]
     NoVein,
     /// The surface cannot be made.
@@ -102,14 +102,14 @@ pub enum RaysError {
     Spline(#[from] SplineError),
 }
 
-/// A palmate leaf from a few numbers.
+/// A palmate leaf defined by a few numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PalmateSpec {
-    /// Chief veins, one a lobe, 3 to 11, odd. Default 5.
+    /// Number of chief veins, one per lobe, 3 to 11, odd. Default 5.
     pub veins: u32,
     /// Length of the middle lobe from the base, metres, above 0. Default 0.1.
     pub length_m: f64,
-    /// How far notches reach down, 0 (a round leaf) to 0.9. Default 0.5.
+    /// Depth of the notches, 0 (a round leaf) to 0.9. Default 0.5.
     pub depth: f64,
 }
 
@@ -119,10 +119,10 @@ impl Default for PalmateSpec {
     }
 }
 
-/// A leaf of parallel veins from a few numbers.
+/// A leaf of parallel veins defined by a few numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelSpec {
-    /// Veins, 3 to 31, odd; the middle one is thicker. Default 9.
+    /// Number of veins, 3 to 31, odd; the middle one is thicker. Default 9.
     pub veins: u32,
     /// Length, metres, above 0. Default 0.3.
     pub length_m: f64,
@@ -136,22 +136,23 @@ impl Default for ParallelSpec {
     }
 }
 
-/// Places on each ray of a made leaf, the base counted.
+/// Points on each ray of a made leaf, including the base.
 const MADE_MARKS: usize = 9;
 
 impl Rays {
-    /// A lobed leaf like a maple's, its base at the origin, middle lobe along +y, upper side towards +z.
+    /// Makes a lobed leaf like a maple's, its base at the origin, middle lobe along +y, upper side towards +z.
     pub fn palmate(spec: &PalmateSpec) -> Self {
         let k = spec.veins.clamp(3, 11) | 1;
         let half = f64::from(k / 2);
         let depth = spec.depth.clamp(0.0, 0.9);
-        // Lobes fan out to 58 degrees either side of three, to 130 of many; outer lobes are shorter.
+        // Lobes fan out to 58 degrees on either side if there are three, to 130 if there are many; outer lobes are
+        // shorter.
         let fan = 1.02 + 1.25 * (1.0 - 1.0 / half);
         let lobe = |i: f64| {
             let out = (i - half) / half;
             (out * fan, spec.length_m * (1.0 - (0.28 + 0.1 * half).min(0.58) * out * out))
         };
-        // Along a gap between lobes: share of the angle, and of the way from notch to tip. Two teeth a side.
+        // Along a gap between lobes: share of the angle, and of the distance from notch to tip. Two teeth per side.
         let side = [
             (0.0, 1.0),
             (0.045, 0.87),
@@ -168,7 +169,7 @@ impl Rays {
             let points = (0..MADE_MARKS).map(|m| {
                 let t = m as f64 / (MADE_MARKS - 1) as f64;
                 let r = length * t;
-                // The blade hangs a little at its ends, and lies deeper along its veins.
+                // The blade droops slightly at its ends, and lies deeper along its veins.
                 let bend = -0.9 * r * r / spec.length_m;
                 let fold = if vein { -0.02 * spec.length_m * t * (1.0 - 0.7 * t) } else { 0.0 };
                 DVec3::new(r * sin, r * cos, 0.25 * bend + fold)
@@ -211,7 +212,7 @@ impl Rays {
         out
     }
 
-    /// A long leaf like a lily's or a grass's, its base at the origin, along +y, upper side towards +z.
+    /// Makes a long leaf like a lily's or a grass's, its base at the origin, along +y, upper side towards +z.
     pub fn parallel(spec: &ParallelSpec) -> Self {
         let k = spec.veins.clamp(3, 31) | 1;
         let wide = 0.5 * spec.width.clamp(0.005, 1.0) * spec.length_m;
@@ -229,9 +230,9 @@ impl Rays {
         })
     }
 
-    /// `k` (odd) parallel veins and the two margins from right to left, through `marks` places each: `place` of the share
-    /// of the length from the base and of the half width (1 right margin, -1 left). `wide`: half of the greatest width,
-    /// from which thickness follows, that of the midrib a good twice as much.
+    /// Makes `k` (odd) parallel veins and the two margins from right to left, through `marks` points each. `place` maps
+    /// the share of the length from the base and of the half width (1 right margin, -1 left) to a point. `wide`: half
+    /// of the greatest width, which sets the thickness, for the midrib rather more than double.
     pub(crate) fn side_by_side(k: u32, marks: usize, wide: f64, place: impl Fn(f64, f64) -> DVec3) -> Self {
         let ray = |j: u32| {
             let s = 1.0 - 2.0 * f64::from(j) / f64::from(k + 1);
@@ -247,7 +248,7 @@ impl Rays {
         Self { rays: (0..k + 2).map(ray).collect() }
     }
 
-    /// Everything that is wrong with the places and thicknesses.
+    /// Iterates over all faults of the points and thicknesses.
     pub fn validate(&self) -> impl Iterator<Item = RaysError> + '_ {
         let marks = self.rays.first().map_or(0, |r| r.points.len());
         let few = self.rays.len() < 3 || marks < 3;
@@ -273,7 +274,7 @@ impl Rays {
         few.into_iter().chain(each).chain(none.then_some(RaysError::NoVein))
     }
 
-    /// The same leaf with all lengths times `factor`.
+    /// Returns the same leaf with all lengths times `factor`.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         for ray in &mut self.rays {
@@ -283,7 +284,7 @@ impl Rays {
         self
     }
 
-    /// The length of the middle vein, or of the middle ray if there is none, by its chords.
+    /// Returns the length of the middle vein, or of the middle ray if there is none, by its chords.
     pub fn length(&self) -> f64 {
         let veins: Vec<&ChiefVein> = self.rays.iter().filter(|r| r.is_vein()).collect();
         let middle = veins.get(veins.len() / 2).copied().or_else(|| self.rays.get(self.rays.len() / 2));
@@ -292,12 +293,12 @@ impl Rays {
 }
 
 impl ChiefVein {
-    /// A thickness was measured on it.
+    /// Whether a thickness was measured on it.
     pub fn is_vein(&self) -> bool {
         self.thickness.iter().any(Option::is_some)
     }
 
-    /// Every thickness, what is missing by the places along the ray.
+    /// Returns every thickness, missing ones interpolated along the ray.
     fn full(&self) -> Vec<f64> {
         let mut way = vec![0.0];
         for w in self.points.windows(2) {
@@ -331,10 +332,10 @@ pub struct RayLeaf {
 }
 
 impl RayLeaf {
-    /// Lays an interpolating blade and veins through the marks. Cost: linear in the marks.
+    /// Fits an interpolating blade and veins through the marks. Cost: linear in the marks.
     ///
     /// # Errors
-    /// The first of [`Rays::validate`], or [`RaysError::Spline`].
+    /// The first fault of [`Rays::validate`], or [`RaysError::Spline`].
     pub fn new(rays: &Rays, thickness: ThicknessRule) -> Result<Self, RaysError> {
         if let Some(fault) = rays.validate().next() {
             return Err(fault);
@@ -360,7 +361,7 @@ impl RayLeaf {
         Ok(out)
     }
 
-    /// The farthest that any vein's centre line is from the blade, metres, at `steps` parameters a span.
+    /// Returns the greatest distance of any vein's centre line from the blade, metres, at `steps` parameters per span.
     pub fn vein_gap(&self, steps: usize) -> f64 {
         let mut gap: f64 = 0.0;
         for (vein, &u) in self.veins.iter().zip(&self.at) {
@@ -371,7 +372,7 @@ impl RayLeaf {
         gap
     }
 
-    /// The leaf as a shape of a plant, where it was measured, in these colours.
+    /// Returns the leaf as a shape of a plant, in its measured place, in these colours.
     pub fn blade(&self, shade: VeinShade) -> SplineBlade {
         let (a, b) = self.blade.u().domain();
         let veins = Venation { veins: self.veins.clone(), fine: self.sides.clone(), margins: Vec::new() };

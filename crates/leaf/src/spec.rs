@@ -1,4 +1,4 @@
-//! All that can be asked of a measured leaf.
+//! Settings of a measured leaf.
 
 use geom::RingRule;
 use schemars::JsonSchema;
@@ -30,7 +30,7 @@ impl SurfaceKind {
     /// All kinds, in the order of Wang et al. (2011).
     pub const ALL: [Self; 4] = [Self::Bezier, Self::Approximate, Self::Interpolate, Self::Nurbs];
 
-    /// The word used in files, options and reports.
+    /// Returns the word used in files, options and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Bezier => "bezier",
@@ -41,7 +41,7 @@ impl SurfaceKind {
     }
 }
 
-/// Which parameters an interpolating side vein has.
+/// Parameters of an interpolating side vein.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum VeinParameters {
@@ -52,7 +52,7 @@ pub enum VeinParameters {
     Own,
 }
 
-/// What colours a measured blade.
+/// Colouring of a measured blade.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LeafPaint {
@@ -63,7 +63,8 @@ pub enum LeafPaint {
     Plain,
 }
 
-/// How a leaf is made of its marks (Wang et al. 2011). Saved with the document; commands and panels set its fields.
+/// Construction of a leaf from its marks (Wang et al. 2011). Saved with the document; commands and panels set its
+/// fields.
 ///
 /// ```
 /// let spec: leaf::LeafSpec = spec::from_toml("surface = \"nurbs\"\ncurl = 0.5").expect("a spec");
@@ -85,7 +86,7 @@ pub struct LeafSpec {
     pub balls: Vec<BallMove>,
     /// Colour of the blade.
     pub texture: LeafPaint,
-    /// What a measured thickness is; default what the file says, else the diameter.
+    /// Meaning of a measured thickness; default that of the file, otherwise the diameter.
     pub thickness: Option<ThicknessRule>,
     /// Parameters of interpolating side veins.
     pub parameters: VeinParameters,
@@ -104,7 +105,7 @@ pub struct LeafSpec {
     pub caps: bool,
     /// A vein along the margin too; default false.
     pub margin_vein: bool,
-    /// The form of the leaf where nothing was measured.
+    /// Form of the leaf if nothing was measured.
     pub form: LeafForm,
     /// Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1.
     #[schemars(range(min = 0.002, max = 10.0), extend("x-unit" = "m"))]
@@ -124,7 +125,7 @@ impl Default for LeafSpec {
             texture: LeafPaint::default(),
             thickness: None,
             parameters: VeinParameters::default(),
-            // 4: the blade visibly follows the midrib, and folds beside it stay soft.
+            // 4: the blade visibly follows the midrib, and folds next to it stay soft.
             vein_weight: 4.0,
             rings: RingRule::default(),
             // As in Table 1 of Wang et al. (2011).
@@ -139,11 +140,11 @@ impl Default for LeafSpec {
 }
 
 impl LeafSpec {
-    /// The marks as they are laid out: balls moved by hand, then curl and wilt. The margin goes with them.
+    /// Returns the marks with balls moved by hand, then curl and wilt. The margin follows.
     ///
     /// # Errors
-    /// [`MarksError::NoBall`] for a ball that the leaf has not; what [`Marks::validate`](crate::Marks::validate) says of the
-    /// moved ones.
+    /// [`MarksError::NoBall`] for a ball that the leaf does not have; those of
+    /// [`Marks::validate`](crate::Marks::validate) for the moved marks.
     pub fn shaped(&self, marks: &FullMarks) -> Result<FullMarks, MarksError> {
         Ok(self.pose().apply(&self.moved(marks)?))
     }
@@ -156,16 +157,16 @@ impl LeafSpec {
         balls::moved(&self.balls, marks)
     }
 
-    /// As [`shaped`](Self::shaped), of chief veins that start together. A ball at the base, which all veins share, is moved
-    /// on all of them.
+    /// As [`shaped`](Self::shaped), for chief veins that start together. A ball at the base, which all veins share, is
+    /// moved on all of them.
     ///
     /// # Errors
-    /// [`RaysError::NoBall`] for a ball that the leaf has not.
+    /// [`RaysError::NoBall`] for a ball that the leaf does not have.
     pub fn shaped_rays(&self, rays: &Rays) -> Result<Rays, RaysError> {
         Ok(self.pose().apply_rays(&balls::moved_rays(&self.balls, rays)?))
     }
 
-    /// Its curl and wilt, hanging down where it is limp.
+    /// Returns its curl and wilt, hanging down if it is limp.
     pub fn pose(&self) -> Pose {
         Pose { curl: self.curl, wilt: self.wilt, ..Pose::default() }
     }

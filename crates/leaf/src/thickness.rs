@@ -1,9 +1,9 @@
-//! What a measured thickness means.
+//! Meaning of a measured thickness.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a measured thickness is to its vein's ball.
+/// Relation of a measured thickness to its vein's ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ThicknessRule {
@@ -15,7 +15,7 @@ pub enum ThicknessRule {
 }
 
 impl ThicknessRule {
-    /// The radius of the ball of a vein that is 1 thick.
+    /// Returns the radius of the ball of a vein with thickness 1.
     pub const fn radius(self) -> f64 {
         match self {
             Self::Diameter => 0.5,

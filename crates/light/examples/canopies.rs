@@ -1,4 +1,4 @@
-//! Light in canopies of small leaves beside the closed form of the turbid medium, as a table and as a plot.
+//! Light in canopies of small leaves compared with the closed form of the turbid medium, as a table and as a plot.
 //!
 //! `cargo run --release -p burgeon-light --example canopies -- FILE.svg`
 
@@ -9,13 +9,13 @@ use base::{Draw, Run, Seed, ops};
 use glam::DVec3;
 use light::{Beams, LightError, LightSpec, LitScene, Optics, SkyKind, SunPosition, absorb};
 
-/// Leaf area indices.
+/// Leaf area indices, each with the colour of its curve.
 const CANOPIES: [(f64, &str); 4] = [(1.0, "#8bc34a"), (2.0, "#4b9f3c"), (3.0, "#26703a"), (4.0, "#0d4030")];
 
 /// Edge of a leaf, metres.
 const LEAF_M: f64 = 0.02;
 
-/// Directions around of each elevation.
+/// Azimuths for each elevation.
 const TURNS: u32 = 6;
 
 /// Square leaves in all directions evenly, in a cell of 1 m by 1 m.
@@ -43,7 +43,7 @@ fn spec() -> LightSpec {
     LightSpec { lines: 1 << 16, repeat_m: Some([1.0, 1.0]), ..LightSpec::default() }
 }
 
-/// What a canopy lets through at each elevation: the mean over azimuths.
+/// Returns the share that a canopy transmits at each elevation: the mean over azimuths.
 fn through(scene: &LitScene, elevations: &[f64]) -> Result<Vec<f64>, LightError> {
     let mut beams = Beams::default();
     for elevation_deg in elevations {
@@ -62,8 +62,8 @@ fn closed_form(leaf_area_index: f64, elevation_deg: f64) -> f64 {
     ops::exp(-0.5 * leaf_area_index / ops::sin(elevation_deg.to_radians()))
 }
 
-/// Places of the plot.
-fn at(elevation_deg: f64, share: f64) -> (f64, f64) {
+/// Returns the position in the plot.
+fn plot_position(elevation_deg: f64, share: f64) -> (f64, f64) {
     (60.0 + elevation_deg / 90.0 * 500.0, 330.0 - share * 300.0)
 }
 
@@ -76,13 +76,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     for k in 0..=5 {
         let share = 0.2 * f64::from(k);
-        let (x, y) = at(0.0, share);
+        let (x, y) = plot_position(0.0, share);
         writeln!(
             svg,
             "<path d=\"M{x} {y}h500\" stroke=\"#ddd\"/><text x=\"52\" y=\"{}\" text-anchor=\"end\">{share:.1}</text>",
             y + 4.0
         )?;
-        let (x, y) = at(18.0 * f64::from(k), 0.0);
+        let (x, y) = plot_position(18.0 * f64::from(k), 0.0);
         writeln!(svg, "<text x=\"{x}\" y=\"{}\" text-anchor=\"middle\">{}</text>", y + 18.0, 18 * k)?;
     }
     writeln!(svg, "<text x=\"310\" y=\"378\" text-anchor=\"middle\">elevation of the light, degrees</text>")?;
@@ -95,7 +95,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (leaf_area_index, colour) in CANOPIES {
         let found = through(&canopy(leaf_area_index, Optics::BLACK), &elevations)?;
         let line: Vec<String> = (2..=90)
-            .map(|k| at(f64::from(k), closed_form(leaf_area_index, f64::from(k))))
+            .map(|k| plot_position(f64::from(k), closed_form(leaf_area_index, f64::from(k))))
             .map(|(x, y)| format!("{x:.1},{y:.1}"))
             .collect();
         writeln!(
@@ -107,10 +107,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let wanted = closed_form(leaf_area_index, *elevation);
             worst = worst.max((share - wanted).abs());
             writeln!(out, "{leaf_area_index}, {elevation}, {share:.4}, {wanted:.4}")?;
-            let (x, y) = at(*elevation, share);
+            let (x, y) = plot_position(*elevation, share);
             writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{colour}\"/>")?;
         }
-        let (x, y) = at(90.0, closed_form(leaf_area_index, 90.0));
+        let (x, y) = plot_position(90.0, closed_form(leaf_area_index, 90.0));
         writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" fill=\"{colour}\">LAI {leaf_area_index}</text>",

@@ -1,9 +1,9 @@
-//! Why there is no result.
+//! Errors of light computations.
 
 use base::{Cancelled, OverBudget, Stopped};
 use spec::RangeFault;
 
-/// Why it is not known what a scene absorbs.
+/// Reason why the absorption of a scene cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LightError {
@@ -13,7 +13,7 @@ pub enum LightError {
     /// A coordinate is NaN, infinite or very large.
     #[error("triangle {triangle} has a corner that is no number or more than {most_m} m away")]
     FarAway {
-        /// Its row.
+        /// Row of the triangle.
         triangle: usize,
         /// The most that a coordinate may be.
         most_m: f64,
@@ -23,7 +23,7 @@ pub enum LightError {
         "light comes from {elevation_deg:.1} degrees below the horizon: give an hour of the day at which the sun is up"
     )]
     BelowHorizon {
-        /// How far below.
+        /// Angle below the horizon, degrees.
         elevation_deg: f64,
     },
     /// There is no light at all.
@@ -37,14 +37,14 @@ pub enum LightError {
         "a line of light would cross {surfaces:.0} surfaces in the mean, and there would be {crossings:.0} million crossings in one direction, more than {most} million: repeat the scene in larger cells, or use fewer rays"
     )]
     Crowded {
-        /// In the mean.
+        /// Mean number of surfaces that a line crosses.
         surfaces: f64,
-        /// In one direction, millions.
+        /// Crossings in one direction, millions.
         crossings: f64,
-        /// The most, millions.
+        /// The limit, millions.
         most: f64,
     },
-    /// It would be too much.
+    /// A limit of the budget was exceeded.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
     /// The user asked to stop.
@@ -60,3 +60,17 @@ impl From<Stopped> for LightError {
         }
     }
 }
+
+base::coded!(LightError {
+    Self::Empty => "light-empty" {},
+    Self::FarAway { triangle, most_m } => "light-far" { triangle, most_m },
+    Self::BelowHorizon { elevation_deg } => "sun-below" { elevation_deg = format!("{elevation_deg:.1}") },
+    Self::Dark => "no-light" {},
+    Self::Crowded { surfaces, crossings, most } => "light-crowded" {
+        surfaces = format!("{surfaces:.0}"), crossings = format!("{crossings:.0}"), most
+    },
+    Self::Cancelled(_) => "cancelled" {},
+} wraps {
+    Self::Range(e) => e, RangeFault;
+    Self::OverBudget(e) => e, OverBudget;
+});

@@ -1,32 +1,34 @@
-//! What surfaces absorb: first what light meets on its way, then what they throw at one another.
+//! Absorption by surfaces: light of the first order, then the exchange between surfaces.
 //!
-//! Lines in the 46 directions of the turtle cross the scene. Light goes along them, in first order from the sky to what a line
-//! meets first. What a patch throws back goes in equal shares along all lines that cross it, to what lies next on each: the
-//! method of global lines (Sbert 1993; transillumination of Neumann 1995), here with the same lines for all bounces, so that
-//! no energy is lost. A line crosses a patch in proportion to the area that it shows, which is Lambert's law.
+//! Lines in the 46 directions of the sky cross the scene. Light travels along them, in first order from the sky to
+//! the first surface that a line meets. The light that a patch scatters leaves in equal shares along all lines that
+//! cross it, to the next surface on each: the method of global lines (Sbert 1993; transillumination of Neumann 1995),
+//! here with the same lines for all bounces, so that energy is conserved. A line crosses a patch in proportion to its
+//! projected area, which is Lambert's law.
 
 use base::{Draw, Run, Seed, map_indexed};
 use glam::{DVec2, DVec3};
 
 use crate::lines::{Crossings, Ground, Lines, OPEN_SOIL};
 use crate::scene::{Patches, check_range};
-use crate::sky::turtle;
+use crate::sky::sky_directions;
 use crate::{Beams, LightError, LitScene};
 
-/// How light is computed. Plain data.
+/// Settings of the light computation. Plain data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSpec {
-    /// Lines in each direction over the scene or its cell, 1,000 to 4,194,304; about so many.
+    /// Approximate number of lines in each direction over the scene or its cell, 1,000 to 4,194,304. Directions below 14
+    /// degrees have fewer over a cell that repeats itself, as each of them crosses more leaves.
     pub lines: u32,
-    /// How often light is followed after the first surface, 0 to 50. What is on its way after the last bounce is shared out as
+    /// Number of bounces after the first surface, 0 to 50. Light that remains after the last bounce is distributed as
     /// in that bounce; with 0 it counts as lost.
     pub bounces: u32,
-    /// The share that the soil throws back, 0 to 1.
+    /// Reflectance of the soil, 0 to 1.
     pub soil_reflectance: f64,
-    /// Height of the soil, metres. What lies below is in the dark.
+    /// Height of the soil, metres. Surfaces below it are in the dark.
     pub ground_m: f64,
-    /// Width along X and depth along Z after which the scene repeats itself without end, metres, 0.001 to 10,000. None: it
-    /// stands alone.
+    /// Width along X and depth along Z after which the scene repeats itself without end, metres, 0.001 to 10,000;
+    /// `None` for an isolated scene.
     pub repeat_m: Option<[f64; 2]>,
 }
 
@@ -37,7 +39,7 @@ impl Default for LightSpec {
 }
 
 impl LightSpec {
-    fn check(&self) -> Result<(), LightError> {
+    pub(crate) fn check(&self) -> Result<(), LightError> {
         check_range("lines", f64::from(self.lines), [1e3, 4_194_304.0], "")?;
         check_range("bounces", f64::from(self.bounces), [0.0, 50.0], "")?;
         check_range("soil", self.soil_reflectance, [0.0, 1.0], "")?;
@@ -52,92 +54,91 @@ impl LightSpec {
 /// Light on one receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReceiverLight {
-    /// Of its triangles, one side, square metres.
+    /// Area of its triangles, one side, square metres.
     pub area_m2: f64,
-    /// Of the middle of its area, metres.
+    /// Area-weighted mean height, metres.
     pub height_m: f64,
-    /// What falls on both sides, first and scattered, W.
+    /// Light that falls on both sides, first order and scattered, W.
     pub incident_w: f64,
-    /// What stays, W.
+    /// Absorbed light, W.
     pub absorbed_w: f64,
-    /// The share of its area that is in the sun, 0 to 1; the mean over all suns. None without a sun, and where lines in its
-    /// direction do not cross the receiver.
+    /// Share of its area that is in the sun, 0 to 1; the mean over all suns. `None` without a sun, and if no line in
+    /// its direction crosses the receiver.
     pub sunlit: Option<f64>,
-    /// How many lines cross it: by chance, figures are off by about one over its root.
+    /// Number of lines that cross it: the relative sampling error of its figures is about one over the square root.
     pub crossings: u64,
 }
 
-/// Light on a patch: up to 32 triangles of one receiver that follow one another.
+/// Light on a patch: up to 32 consecutive triangles of one receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchLight {
-    /// One side, square metres.
+    /// Area of one side, square metres.
     pub area_m2: f64,
-    /// What stays, W.
+    /// Absorbed light, W.
     pub absorbed_w: f64,
 }
 
-/// Where the light of a cell that repeats itself goes, W.
+/// Energy balance of a cell that repeats itself, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
-    /// Into the cell, from above.
+    /// Light that enters the cell from above.
     pub incoming_w: f64,
-    /// Stays on surfaces.
+    /// Light absorbed by surfaces.
     pub absorbed_w: f64,
-    /// Stays in the soil.
+    /// Light absorbed by the soil.
     pub soil_w: f64,
-    /// Back to the sky.
+    /// Light that returns to the sky.
     pub reflected_w: f64,
-    /// On its way after the last bounce, if that was none.
+    /// Light that remains when no bounce is followed.
     pub lost_w: f64,
 }
 
-/// What a scene shows to one direction.
+/// Shadow and transmission of a scene in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionLight {
-    /// Towards the light.
+    /// Unit vector towards the light.
     pub to: DVec3,
-    /// What it gives a horizontal surface, W/m2.
+    /// Irradiance of a horizontal surface, W/m2.
     pub horizontal: f64,
-    /// The outline that it throws a shadow with, across the direction, square metres; of a cell that repeats itself within
-    /// the cell.
+    /// Area of the shadow across the direction, square metres; of a repeating cell, within the cell.
     pub outline_m2: f64,
-    /// The share of lines that meet nothing on their way to the soil; of cells that repeat themselves alone.
+    /// Share of lines that reach the soil without meeting a surface; only of cells that repeat themselves.
     pub transmitted: Option<f64>,
 }
 
-/// What a scene absorbs.
+/// Light that a scene absorbs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Absorption {
     /// A row for each of [`LitScene::receivers`].
     pub receivers: Vec<ReceiverLight>,
-    /// What is lit as one.
+    /// Light on each patch.
     pub patches: Vec<PatchLight>,
-    /// Of each triangle of the scene, its row of `patches`.
+    /// For each triangle of the scene, its row of `patches`.
     pub patch_of_triangle: Vec<u32>,
-    /// What light gives a horizontal surface above the scene, W/m2.
+    /// Irradiance of a horizontal surface above the scene, W/m2.
     pub horizontal: f64,
-    /// What meets a surface on its way from the light, W.
+    /// Light that meets a surface in first order, W.
     pub intercepted_w: f64,
     /// The balance of a scene that repeats itself.
     pub balance: Option<EnergyBalance>,
-    /// The directions that were looked along: those of the sky and the others.
+    /// The directions that were computed: those of the sky and the others.
     pub directions: Vec<DirectionLight>,
 }
 
-/// So many directions are kept at once before they are added up, in their order.
-const AT_ONCE: usize = 16;
+/// Most directions that are in memory at once before they are added up, in their order.
+pub(crate) const AT_ONCE: usize = 16;
 
-/// What lines cross is kept from bounce to bounce up to so many bytes; what is more is found again.
+/// Most bytes of crossings that are kept from bounce to bounce; those beyond are computed again.
 const KEPT_BYTES: usize = 400_000_000;
 
-/// Less than this share of all light is not followed any more.
+/// Share of all light below which bounces end.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// What each receiver and patch absorbs.
+/// Computes the light that each receiver and patch absorbs.
 ///
-/// Guaranteed: the same bits for any executor. In a cell that repeats itself, incoming light is what is absorbed, thrown back and
-/// left in the soil, to rounding. Not modelled: gloss, and what a part of a patch throws back more than another. An isolated
-/// scene stands on soil that is lit as far as the scene does not shade it.
+/// Guaranteed: the same bits for any executor. In a cell that repeats itself, incoming light equals the sum of absorbed
+/// light, light reflected to the sky and light absorbed by the soil, to rounding. Not modelled: gloss, and differences
+/// in scattering within a patch. An isolated scene stands on soil that is lit as far as the scene does not shade it.
 ///
 /// Cost: linear in triangles and lines, times directions: 46 of the sky and the others.
 ///
@@ -184,28 +185,29 @@ pub fn absorb(
     Ok(exchange.finish(beams))
 }
 
-/// A direction that light comes from, or is thrown into.
+/// A direction of incoming light, or of scattering.
 #[derive(Clone, Debug)]
-struct Way {
-    to: DVec3,
-    lines: Lines,
-    /// What it gives a horizontal surface.
-    horizontal: f64,
-    /// Of the sky, steradians: light is thrown there, too. 0 for others.
+pub(crate) struct Way {
+    pub(crate) to: DVec3,
+    pub(crate) lines: Lines,
+    /// Irradiance of a horizontal surface from this direction.
+    pub(crate) horizontal: f64,
+    /// Solid angle of a direction of the sky, steradians, into which light is scattered too; 0 for others.
     solid_angle: f64,
     is_sun: bool,
 }
 
-/// The directions of the sky as far as they matter, then the others.
-fn ways(
+/// Returns the directions of the sky as far as they matter, then the others.
+pub(crate) fn ways(
     scene: &LitScene,
     ground: &Ground,
     beams: &Beams,
     (count, is_scattering): (u32, bool),
     seed: Seed,
 ) -> Vec<Way> {
-    let sky =
-        turtle().zip(beams.sky).map(|((to, solid_angle), horizontal)| (to, horizontal, solid_angle, false));
+    let sky = sky_directions()
+        .zip(beams.sky)
+        .map(|((to, solid_angle), horizontal)| (to, horizontal, solid_angle, false));
     let others = beams.others.iter().map(|b| (b.to, b.horizontal, 0.0, b.is_sun));
     let wanted = sky.chain(others).filter(|w| w.1 > 0.0 || (is_scattering && w.2 > 0.0));
     let way = |(k, (to, horizontal, solid_angle, is_sun)): (u64, (DVec3, f64, f64, bool))| {
@@ -221,32 +223,32 @@ fn ways(
 struct Sides<'a>(&'a [u32]);
 
 impl Sides<'_> {
-    /// The side that a line meets from the light.
+    /// Returns the side that a line from the light meets.
     fn upper(&self, hit: u32) -> usize {
         2 * self.0[hit as usize / 2] as usize + (1 - (hit as usize & 1))
     }
 
-    /// The side by which it leaves.
+    /// Returns the side by which the line leaves.
     fn lower(&self, hit: u32) -> usize {
         2 * self.0[hit as usize / 2] as usize + (hit as usize & 1)
     }
 }
 
-/// What one direction gives in first order.
+/// Result of one direction in first order.
 struct First {
     incident: Vec<f64>,
-    /// What of the sky each side shows to lines.
+    /// Projected area of each side, weighted by the solid angles of the sky.
     outlet: Vec<f64>,
-    /// What does not arrive in each cell of the soil.
+    /// Light that does not arrive in each cell of the soil.
     shaded: Vec<f64>,
-    /// Of each receiver in the direction of a sun: the area that is lit, and all of it.
+    /// For each receiver in the direction of a sun, the lit area and the whole area.
     sunlit: Vec<[f64; 2]>,
     crossings: Vec<u64>,
     shadows: usize,
     kept: Option<Crossings>,
 }
 
-/// What one direction gives in a bounce.
+/// Result of one direction in a bounce.
 struct Bounced {
     received: Vec<f64>,
     soil: Vec<f64>,
@@ -262,16 +264,16 @@ struct Exchange<'a> {
     patches: Patches,
     kept: Vec<Option<Crossings>>,
     shadows: Vec<usize>,
-    /// Of each side, W: what fell on it, and what it throws back.
+    /// For each side, W: the light that fell on it, and the light that it scatters.
     incident: Vec<f64>,
     emitted: Vec<f64>,
     outlet: Vec<f64>,
-    /// Of each patch.
+    /// Absorbed light of each patch, W.
     absorbed: Vec<f64>,
     sunlit: Vec<[f64; 2]>,
     crossings: Vec<u64>,
     intercepted: f64,
-    /// What the soil throws back, W/m2, by cells; the last is the open.
+    /// Light that the soil reflects, W/m2, by cells; the last is the open.
     soil_emitted: Vec<f64>,
     soil_absorbed: f64,
     reflected: f64,
@@ -371,7 +373,7 @@ impl<'a> Exchange<'a> {
                     first.outlet[sides.lower(*hit)] += weight;
                 }
                 if way.is_sun {
-                    // Of the triangle, the area that is seen between lines.
+                    // Area of the triangle that is seen between lines.
                     let normal = self.scene.normal(triangle);
                     let area = way.lines.area * normal.length()
                         / normal.dot(way.to).abs().max(GRAZING * normal.length());
@@ -398,7 +400,7 @@ impl<'a> Exchange<'a> {
                 .zip(&self.outlet)
                 .map(|(emitted, outlet)| if *outlet > 0.0 { emitted / outlet } else { 0.0 })
                 .collect();
-            // What no line of the sky crosses keeps what it has.
+            // A side that no line of the sky crosses keeps its light.
             for (side, _) in self.outlet.iter().enumerate().filter(|(_, outlet)| **outlet <= 0.0) {
                 self.absorbed[side / 2] += self.emitted[side];
             }
@@ -422,7 +424,7 @@ impl<'a> Exchange<'a> {
             }
             let from_soil = self.soil_sent() - sum.from_soil;
             let left = if pass == bounces { self.would_send(&sum) } else { 0.0 };
-            // The light that is still on its way goes where that of this bounce went.
+            // Light that remains is distributed as that of this bounce was.
             let factor = if left > 0.0 && left < sent { sent / (sent - left) } else { 1.0 };
             self.reflected += factor * (sum.sky + from_soil.max(0.0));
             self.settle(&sum.received, &sum.soil, factor);
@@ -481,7 +483,7 @@ impl<'a> Exchange<'a> {
         Ok(Some(out))
     }
 
-    /// Books what arrived, `factor` times, and makes of it what is thrown back next.
+    /// Adds the light that arrived, `factor` times, and turns it into the light that is scattered next.
     fn settle(&mut self, arrived: &[f64], soil: &[f64], factor: f64) {
         for (patch, receiver) in self.patches.receiver.iter().enumerate() {
             let optics = self.scene.receivers[*receiver as usize];
@@ -500,7 +502,7 @@ impl<'a> Exchange<'a> {
         }
     }
 
-    /// What is thrown back now, by surfaces and by the soil around them.
+    /// Returns the light that is scattered now, by surfaces and by the soil around them.
     fn sent(&self) -> f64 {
         self.emitted.iter().sum::<f64>() + self.soil_sent()
     }
@@ -509,7 +511,7 @@ impl<'a> Exchange<'a> {
         self.soil_emitted[..OPEN_SOIL].iter().sum::<f64>() * self.ground.cell_area()
     }
 
-    /// What would be thrown back of what arrived.
+    /// Returns the light that would be scattered of what arrived.
     fn would_send(&self, arrived: &Bounced) -> f64 {
         let sides = arrived.received.chunks_exact(2).zip(&self.patches.receiver);
         let surfaces: f64 =
@@ -569,5 +571,5 @@ impl<'a> Exchange<'a> {
     }
 }
 
-/// The least cosine between a sunbeam and a normal: what is seen more from its edge counts as if it were not.
+/// Least cosine between a sunbeam and a normal: a surface at a more grazing angle counts as unseen.
 const GRAZING: f64 = 0.01;

@@ -1,8 +1,8 @@
-//! Parallel lines through a scene, evenly spaced, and all that each of them crosses.
+//! Parallel lines through a scene, evenly spaced, and all the surfaces that each of them crosses.
 //!
-//! A line that passes through an edge of two triangles crosses exactly one of them: corners are whole numbers of sub-pixels,
-//! and so is the arithmetic that decides. Lines through a scene that repeats itself leave its cell on one side and come in
-//! again on the other.
+//! A line that passes through an edge of two triangles crosses exactly one of them: corners are whole numbers of
+//! sub-pixels, and the arithmetic that decides is exact. Lines through a scene that repeats itself leave its cell on
+//! one side and enter again on the other.
 
 use base::CancelToken;
 use glam::{DVec2, DVec3};
@@ -15,26 +15,30 @@ const SUB: i64 = 256;
 /// Cells of soil along each side of its grid.
 pub(crate) const SOIL_SIDE: u32 = 16;
 
-/// The cell of soil that is all outside of the grid: in the open.
+/// The cell of soil that stands for everything outside of the grid: in the open.
 pub(crate) const OPEN_SOIL: usize = (SOIL_SIDE * SOIL_SIDE) as usize;
 
-/// Crossings in one direction: some 24 bytes each on each thread.
+/// Most crossings in one direction: some 24 bytes each on each thread.
 const MOST_CROSSINGS: usize = 12_000_000;
 
-/// Products of coordinates in sub-pixels still are whole numbers of 64 bits.
+/// Largest coordinate, in pixels, whose products in sub-pixels still fit 64-bit integers.
 const FARTHEST_PIXEL: f64 = 3.9e6;
 
-/// Between two looks at whether somebody asked to stop.
+/// Sine of the elevation below which a cell that repeats itself has fewer lines: as many as lie as densely across the
+/// light as those of this elevation.
+const FULL_SINE: f64 = 0.25;
+
+/// Triangles between two checks for cancellation.
 const TRIANGLES_AT_ONCE: usize = 100_000;
 
-/// Where the ground of a scene lies, and how it repeats itself.
+/// Level of the ground of a scene, and the period of the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Ground {
-    /// Height of the soil.
+    /// Height of the soil, metres.
     pub(crate) level_m: f64,
-    /// Width along X and depth along Z of the cell that repeats itself.
+    /// Width along X and depth along Z of the cell that repeats itself, metres.
     pub(crate) repeat_m: Option<DVec2>,
-    /// Lowest corner of the soil's grid (X, Z), and the size of all of it.
+    /// Lowest corner of the soil's grid (X, Z), and the size of the whole grid.
     from: DVec2,
     size: DVec2,
 }
@@ -54,12 +58,12 @@ impl Ground {
         Self { level_m, repeat_m, from, size: repeat_m.unwrap_or(around.max(DVec2::splat(1e-6))) }
     }
 
-    /// Square metres of a cell of soil.
+    /// Returns the area of a cell of soil, square metres.
     pub(crate) fn cell_area(&self) -> f64 {
         self.size.x * self.size.y / f64::from(SOIL_SIDE * SOIL_SIDE)
     }
 
-    /// The cell of soil at a place.
+    /// Returns the cell of soil at a place.
     fn cell(&self, at: DVec2) -> usize {
         let share = (at - self.from) / self.size;
         if !(share.cmpge(DVec2::ZERO).all() && share.cmplt(DVec2::ONE).all()) {
@@ -70,7 +74,7 @@ impl Ground {
     }
 }
 
-/// A number of 0 or more as a row below `rows`.
+/// Converts a number of 0 or more to a row below `rows`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded on both sides")]
 fn row_of(x: f64, rows: u32) -> usize {
     x.clamp(0.0, f64::from(rows - 1)) as usize
@@ -80,21 +84,21 @@ fn row_of(x: f64, rows: u32) -> usize {
 #[derive(Clone, Debug)]
 pub(crate) struct Lines {
     to: DVec3,
-    /// A pixel's coordinates of a point: products with these, and offsets.
+    /// Pixel coordinates of a point: the vectors to multiply it with, and offsets.
     across: [DVec3; 2],
     first: DVec2,
     along: DVec3,
-    /// Height: by the second coordinate, by that along the line, and of the origin.
+    /// Height: its change with the second coordinate, its change along the line, and the height of the origin.
     height: [f64; 3],
     columns: u32,
     rows: u32,
     wraps: bool,
-    /// Square metres between lines, across them.
+    /// Area that each line represents, across it, square metres.
     pub(crate) area: f64,
 }
 
 impl Lines {
-    /// About `count` lines over the scene, or over its cell. `jitter`: what a pixel is moved by, 0 to 1.
+    /// Makes about `count` lines over the scene, or over its cell. `jitter`: offset of the pixels, 0 to 1.
     pub(crate) fn new(scene: &LitScene, ground: &Ground, to: DVec3, count: u32, jitter: DVec2) -> Self {
         match ground.repeat_m {
             Some(cell) => Self::over_cell(ground, cell, to, (count, jitter)),
@@ -103,12 +107,14 @@ impl Lines {
     }
 
     fn over_cell(ground: &Ground, cell: DVec2, to: DVec3, (count, jitter): (u32, DVec2)) -> Self {
-        // Whole numbers of lines for each cell of soil.
-        let wanted = (f64::from(count) * cell.x / cell.y).sqrt();
+        // Low light crosses many leaves on its way to the ground.
+        let count = f64::from(count) * (to.y / FULL_SINE).min(1.0);
+        // A whole number of lines for each cell of soil.
+        let wanted = (count * cell.x / cell.y).sqrt();
         let whole =
             |n: f64| SOIL_SIDE * base::ops::whole((n / f64::from(SOIL_SIDE)).round().clamp(1.0, 65_536.0));
         let columns = whole(wanted);
-        let rows = whole(f64::from(count) / f64::from(columns));
+        let rows = whole(count / f64::from(columns));
         let pixel = DVec2::new(cell.x / f64::from(columns), cell.y / f64::from(rows));
         let slope = DVec2::new(to.x, to.z) / to.y;
         Self {
@@ -151,12 +157,12 @@ impl Lines {
         }
     }
 
-    /// Square metres of a horizontal surface between lines.
+    /// Returns the area of a horizontal surface that each line represents, square metres.
     pub(crate) fn horizontal_area(&self) -> f64 {
         self.area / self.to.y
     }
 
-    /// The place of the soil's grid at which a line ends.
+    /// Returns the cell of soil at which a line ends.
     fn soil(&self, ground: &Ground, pixel: u32) -> u16 {
         let (column, row) = (pixel % self.columns, pixel / self.columns);
         let cell = if self.wraps {
@@ -174,7 +180,7 @@ impl Lines {
         u16::try_from(cell).unwrap_or(u16::MAX)
     }
 
-    /// All that each line crosses above the soil, from the light on.
+    /// Returns all that each line crosses above the soil, starting from the light.
     ///
     /// # Errors
     /// [`LightError::Crowded`], [`LightError::Cancelled`].
@@ -241,7 +247,7 @@ impl Lines {
         }
     }
 
-    /// By line, then from the light on; what lies at the same place in the order of triangles.
+    /// Sorts crossings by line, then from the light on; those at the same place in the order of triangles.
     fn sorted(&self, found: &[Found], ground: &Ground) -> Crossings {
         let mut starts = vec![0_u32; self.columns as usize * self.rows as usize + 1];
         for f in found {
@@ -265,7 +271,7 @@ impl Lines {
             if line.is_empty() {
                 continue;
             }
-            // A few: insertion keeps the order of equals.
+            // With few crossings, insertion keeps the order of equal ones.
             for i in 1..line.len() {
                 let mut k = i;
                 while k > 0 && line[k - 1].0 < line[k].0 {
@@ -281,19 +287,19 @@ impl Lines {
     }
 }
 
-/// What the lines of one direction cross.
+/// Crossings of the lines of one direction.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Crossings {
-    /// Twice the row of the triangle, and 1 if the light comes to its front; from the light on, line after line.
+    /// Twice the row of the triangle, plus 1 if the light meets its front; from the light on, line after line.
     hits: Vec<u32>,
-    /// Where each line that crosses something ends among them.
+    /// End in `hits` of each line that crosses something.
     ends: Vec<u32>,
-    /// The cell of soil below it.
+    /// Cell of soil below each line.
     soil: Vec<u16>,
 }
 
 impl Crossings {
-    /// Of each line that crosses something: all that it crosses, and the cell of soil at its end.
+    /// Iterates over the lines that cross something: all crossings of each, and the cell of soil at its end.
     pub(crate) fn lines(&self) -> impl Iterator<Item = (&[u32], usize)> {
         let mut start = 0;
         self.ends.iter().zip(&self.soil).map(move |(end, soil)| {
@@ -303,7 +309,7 @@ impl Crossings {
         })
     }
 
-    /// How many lines cross something.
+    /// Returns how many lines cross something.
     pub(crate) fn count(&self) -> usize {
         self.ends.len()
     }
@@ -325,7 +331,7 @@ struct Found {
 #[derive(Clone, Copy, Debug)]
 struct Placed {
     across: DVec2,
-    /// In sub-pixels.
+    /// Position across the lines, sub-pixels.
     whole: [i32; 2],
     along: f64,
 }
@@ -335,23 +341,23 @@ fn snapped(x: f64) -> i32 {
     (x * SUB as f64).round() as i32
 }
 
-/// A triangle as lines see it.
+/// A triangle in the coordinates of the lines.
 struct Flat {
-    /// Counter-clockwise, in sub-pixels.
+    /// Corners, counter-clockwise, in sub-pixels.
     corners: [[i64; 2]; 3],
-    /// Columns and rows of pixels whose middles may lie in it, first and last.
+    /// First and last columns and rows of pixels whose centres may lie in the triangle.
     columns: [i64; 2],
     rows: [i64; 2],
-    /// Along the line at a place, how it changes across, and its bounds.
+    /// Coordinate along the line at a place, its gradient across the lines, and its bounds.
     from: DVec2,
     at_from: f64,
     slope: DVec2,
     bounds: [f64; 2],
-    /// What takes time for it: rows, or all pixels.
+    /// Measure of the time to scan the triangle: rows, or all pixels.
     size: i64,
 }
 
-/// An edge: what is inside of it has at least `least` at `start + x * step`.
+/// An edge: points inside have at least `least` at `start + x * step`.
 #[derive(Clone, Copy)]
 struct Edge {
     start: i64,
@@ -360,7 +366,7 @@ struct Edge {
 }
 
 impl Flat {
-    /// None where no line can cross it.
+    /// Returns `None` if no line can cross the triangle.
     fn new([a, b, c]: [&Placed; 3]) -> Option<Self> {
         let corners = [a, b, c].map(|p| p.whole.map(i64::from));
         let range = |k: usize| {
@@ -393,7 +399,7 @@ impl Flat {
 
     fn along(&self, x: i64, y: i64) -> f64 {
         let middle = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        // Where it is nearly seen from its edge, the slope is very large.
+        // The slope of a triangle seen almost from its edge is very large.
         (self.at_from + self.slope.dot(middle - self.from)).clamp(self.bounds[0], self.bounds[1])
     }
 
@@ -404,13 +410,13 @@ impl Flat {
             // The middle of the first pixel.
             let [x, y] = [self.columns[0], self.rows[0]].map(|first| first * SUB + SUB / 2);
             let start = dx * (y - p[1]) - dy * (x - p[0]);
-            // What lies on an edge belongs to the triangle for which it goes up, or to the left.
+            // A point on an edge belongs to the triangle for which the edge goes up, or to the left.
             let owns = dy > 0 || (dy == 0 && dx < 0);
             Edge { start, step: [-dy * SUB, dx * SUB], least: i64::from(!owns) }
         })
     }
 
-    /// Calls `found` with the pixels whose middles lie in it.
+    /// Calls `found` with the pixels whose centres lie in the triangle.
     fn each_pixel(&self, mut found: impl FnMut(i64, i64)) {
         let edges = self.edges();
         let width = self.columns[1] - self.columns[0];
@@ -427,10 +433,11 @@ impl Flat {
     }
 }
 
-/// So many are sooner tried than divided.
+/// Most columns that are tested one by one rather than by division.
 const FEW_COLUMNS: i64 = 8;
 
-/// The columns, from the first, that are inside of all edges in a row; the first is behind the last where there are none.
+/// Returns the columns, from the first, that are inside of all edges in a row; the first is behind the last if there
+/// are none.
 fn span(edges: &[Edge; 3], values: [i64; 3], width: i64) -> [i64; 2] {
     let mut span = [0, width];
     for (edge, value) in edges.iter().zip(values) {
@@ -464,7 +471,7 @@ mod tests {
     fn a_cell_that_is_full_is_crossed_once_by_every_line() {
         let scene = square(2.0);
         let ground = Ground::new(&scene, 0.0, Some([2.0, 2.0]));
-        for (to, _) in crate::sky::turtle() {
+        for (to, _) in crate::sky::sky_directions() {
             let lines = Lines::new(&scene, &ground, to, 5_000, DVec2::new(0.3, 0.7));
             let found = lines.cross(&scene, &ground, &CancelToken::new()).expect("crossings");
             assert_eq!(found.count(), (lines.columns * lines.rows) as usize);
@@ -476,7 +483,7 @@ mod tests {
     fn the_area_that_lines_see_is_that_of_the_projection() {
         let scene = square(3.0);
         let ground = Ground::new(&scene, 0.0, None);
-        for (to, _) in crate::sky::turtle() {
+        for (to, _) in crate::sky::sky_directions() {
             let lines = Lines::new(&scene, &ground, to, 100_000, DVec2::new(0.3, 0.7));
             let found = lines.cross(&scene, &ground, &CancelToken::new()).expect("crossings");
             let seen = found.count() as f64 * lines.area;

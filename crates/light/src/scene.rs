@@ -1,4 +1,4 @@
-//! What light falls on: triangles, what each belongs to, and how that reflects and transmits.
+//! Scenes that light falls on: triangles, their owners, and the reflectance and transmittance of these.
 
 use base::{Budget, Counted};
 use glam::DVec3;
@@ -6,25 +6,25 @@ use spec::RangeFault;
 
 use crate::LightError;
 
-/// What becomes of light at a surface. Reflection and transmission are diffuse (Lambert).
+/// Optical properties of a surface. Reflection and transmission are diffuse (Lambert).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optics {
-    /// The share that is thrown back, 0 to 1.
+    /// Share of the light that is reflected, 0 to 1.
     pub reflectance: f64,
-    /// The share that goes through, 0 to 1; together with the reflectance at most 1.
+    /// Share of the light that is transmitted, 0 to 1; together with the reflectance at most 1.
     pub transmittance: f64,
 }
 
 impl Optics {
-    /// Leaves in photosynthetically active light: broad leaves of the table of Dorman and Sellers (1989), which land surface
-    /// models use.
+    /// Leaves in photosynthetically active light: broad leaves of the table of Dorman and Sellers (1989), which land
+    /// surface models use.
     pub const LEAF: Self = Self { reflectance: 0.10, transmittance: 0.05 };
-    /// Wood, bark and all else that is opaque, of the same table.
+    /// Wood, bark and all other opaque matter, of the same table.
     pub const WOOD: Self = Self { reflectance: 0.16, transmittance: 0.0 };
-    /// What throws nothing back.
+    /// A surface that absorbs all light.
     pub const BLACK: Self = Self { reflectance: 0.0, transmittance: 0.0 };
 
-    /// The share that does not stay.
+    /// Returns the share of the light that is not absorbed.
     pub fn scattered(self) -> f64 {
         self.reflectance + self.transmittance
     }
@@ -58,33 +58,34 @@ pub(crate) fn check_range(
 pub struct LitScene {
     /// Corners.
     pub points: Vec<DVec3>,
-    /// Rows of `points`; counter-clockwise seen from the front. Both sides of each triangle receive light.
+    /// Rows of `points`, counter-clockwise seen from the front. Both sides of each triangle receive light.
     pub triangles: Vec<[u32; 3]>,
-    /// What each triangle belongs to: rows of `receivers`. Triangles of one receiver that follow one another are cheapest.
+    /// Owner of each triangle: a row of `receivers`. Consecutive triangles of one receiver are cheapest.
     pub owners: Vec<u32>,
-    /// How what triangles belong to reflects and transmits.
+    /// Optical properties of each owner.
     pub receivers: Vec<Optics>,
 }
 
-/// Neighbouring triangles of one receiver that throw light back as one: at most so many. Two rings of a tube of eight sides.
+/// Most triangles of a patch: neighbours of one receiver that scatter light together. Two rings of a tube of eight
+/// sides.
 const PATCH_TRIANGLES: usize = 32;
 
-/// Farther away, sub-pixels of lines would no longer be whole numbers.
+/// Largest distance, metres: farther away, sub-pixels of lines would no longer be whole numbers.
 const FARTHEST_M: f64 = 1e5;
 
-/// Triangles of one receiver that throw light back evenly, each side by itself.
+/// Groups of triangles of one receiver that scatter light evenly, each side by itself.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Patches {
-    /// Of each triangle.
+    /// Patch of each triangle.
     pub(crate) of_triangle: Vec<u32>,
     /// Row of the receiver.
     pub(crate) receiver: Vec<u32>,
-    /// Square metres.
+    /// Area of each patch, square metres.
     pub(crate) area: Vec<f64>,
 }
 
 impl LitScene {
-    /// Twice the area of a triangle along its normal.
+    /// Returns the normal of a triangle, of twice its area in length.
     pub(crate) fn normal(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].map(|i| self.points[i as usize]);
         (b - a).cross(c - a)

@@ -1,4 +1,4 @@
-//! Where the sun stands, and how bright it and a clear sky are.
+//! Position of the sun, brightness of the sun and of a clear sky.
 
 use base::ops;
 use glam::DVec3;
@@ -6,23 +6,24 @@ use glam::DVec3;
 use crate::LightError;
 use crate::scene::check_range;
 
-/// A place of the sky.
+/// A direction towards the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPosition {
-    /// Clockwise from north, degrees, 0 to 360.
+    /// Azimuth clockwise from north, degrees, 0 to 360.
     pub azimuth_deg: f64,
-    /// Above the horizon, degrees; of the middle of the sun, without refraction.
+    /// Elevation above the horizon, degrees; of the centre of the sun, without refraction.
     pub elevation_deg: f64,
 }
 
 impl SunPosition {
-    /// The unit vector towards it.
+    /// Returns the unit vector towards it.
     pub fn direction(self) -> DVec3 {
         direction_to(self.azimuth_deg, self.elevation_deg)
     }
 }
 
-/// The unit vector towards a place of the sky. Degrees: azimuth clockwise from north (-Z), elevation above the horizon.
+/// Returns the unit vector towards a place of the sky. Degrees: azimuth clockwise from north (-Z), elevation above the
+/// horizon.
 ///
 /// ```
 /// let east = light::direction_to(90.0, 0.0);
@@ -34,14 +35,14 @@ pub fn direction_to(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     DVec3::new(sin * flat, up, -cos * flat)
 }
 
-/// A place of the earth on a day.
+/// A place on Earth and a date.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPlace {
-    /// Degrees, -90 to 90; north is positive.
+    /// Latitude, degrees, -90 to 90; north is positive.
     pub latitude_deg: f64,
-    /// Degrees, -180 to 180; east is positive.
+    /// Longitude, degrees, -180 to 180; east is positive.
     pub longitude_deg: f64,
-    /// Metres above the sea, -500 to 9,000.
+    /// Altitude above the sea, metres, -500 to 9,000.
     pub altitude_m: f64,
     /// Year (1950 to 2050), month and day.
     pub date: [u32; 3],
@@ -61,7 +62,7 @@ impl SunPlace {
         Ok(())
     }
 
-    /// Days since noon of 1 January 2000 (UT), at an hour (UT) of the day.
+    /// Returns the days since noon of 1 January 2000 (UT), at an hour (UT) of the day.
     fn days(&self, hour_ut: f64) -> f64 {
         let [year, month, day] = self.date.map(f64::from);
         // Julian day at midnight by Meeus (1998), chapter 7, of the Gregorian calendar.
@@ -75,10 +76,11 @@ impl SunPlace {
         julian + hour_ut / 24.0 - 2_451_545.0
     }
 
-    /// Where the sun stands at an hour of the day, universal time; hours below 0 and above 24 are of the days before and after.
+    /// Returns the position of the sun at an hour of the day, universal time; hours below 0 and above 24 are of the
+    /// days before and after.
     ///
-    /// By the Astronomical Almanac as Michalsky (1988) gives it: within 0.01 degrees from 1950 to 2050. Without refraction,
-    /// which lifts the sun by 0.5 degrees at the horizon and by less than 0.1 degrees from 10 degrees on.
+    /// By the Astronomical Almanac in the form of Michalsky (1988): within 0.01 degrees from 1950 to 2050. Without
+    /// refraction, which lifts the sun by 0.5 degrees at the horizon and by less than 0.1 degrees from 10 degrees on.
     pub fn sun(&self, hour_ut: f64) -> SunPosition {
         let n = self.days(hour_ut);
         let mean_longitude = 280.460 + 0.985_647_4 * n;
@@ -101,9 +103,9 @@ impl SunPlace {
         SunPosition { azimuth_deg: ops::atan2(east, north).to_degrees().rem_euclid(360.0), elevation_deg }
     }
 
-    /// How bright sun and sky are on a clear day, by the model of the European Solar Radiation Atlas (Rigollier, Bauer and
-    /// Wald 2000). `turbidity`: Linke's, for an air mass of 2; 2 is very clear and cold, 3 clear and warm, 5 moist, 7
-    /// polluted; 1 to 10.
+    /// Returns the brightness of sun and sky on a clear day, by the model of the European Solar Radiation Atlas
+    /// (Rigollier, Bauer and Wald 2000). `turbidity`: Linke's, for an air mass of 2; 2 is very clear and cold, 3 clear
+    /// and warm, 5 moist, 7 polluted; 1 to 10.
     ///
     /// Not covered: clouds. The authors found errors of some 5 to 10 % against hours measured under clear skies.
     ///
@@ -124,7 +126,7 @@ impl SunPlace {
         Ok(Sunlight { sun, direct, diffuse: diffuse.max(0.0) })
     }
 
-    /// How much brighter the sun is than from its mean distance.
+    /// Returns the brightness of the sun relative to that at its mean distance.
     fn nearness(&self, hour_ut: f64) -> f64 {
         // Day of the year as an angle, from 1 January; the Atlas's eccentricity correction.
         let first = Self { date: [self.date[0], 1, 1], ..*self };
@@ -142,28 +144,28 @@ fn days_of(year: u32, month: u32) -> u32 {
     }
 }
 
-/// W/m2, of all wavelengths.
+/// Irradiance by the sun outside the atmosphere at its mean distance, all wavelengths, W/m2.
 const SOLAR_CONSTANT: f64 = 1_367.0;
 
 /// Light of all wavelengths on a horizontal surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sunlight {
-    /// Where the sun stands.
+    /// Position of the sun.
     pub sun: SunPosition,
-    /// Straight from it, W/m2 on a horizontal surface.
+    /// Direct light of the sun, W/m2 on a horizontal surface.
     pub direct: f64,
-    /// From the sky, W/m2.
+    /// Diffuse light of the sky, W/m2.
     pub diffuse: f64,
 }
 
-/// The air that the light goes through, of that above the sea to the zenith (Kasten and Young 1989).
+/// Returns the air mass on the path of the light, relative to a vertical path from sea level (Kasten and Young 1989).
 fn air_mass(elevation_deg: f64, altitude_m: f64) -> f64 {
     let pressure = ops::exp(-altitude_m / 8434.5);
     let sine = ops::sin(elevation_deg.to_radians());
     pressure / (sine + 0.50572 * ops::powf(elevation_deg + 6.07995, -1.6364))
 }
 
-/// Optical thickness of pure air per air mass (Kasten 1996).
+/// Returns the optical thickness of pure air per air mass (Kasten 1996).
 fn rayleigh(mass: f64) -> f64 {
     // The polynomial holds for the sun above 2 degrees.
     if mass > 20.0 {
@@ -173,12 +175,12 @@ fn rayleigh(mass: f64) -> f64 {
     1.0 / (6.6296 + m * (1.7513 + m * (-0.1202 + m * (0.0065 - m * 0.00013))))
 }
 
-/// What of the light would come from the sky if the sun stood at the zenith (Rigollier and others 2000, Eq 18).
+/// Returns the transmission function of diffuse light with the sun at the zenith (Rigollier and others 2000, Eq 18).
 fn diffuse_at_zenith(turbidity: f64) -> f64 {
     -1.5843e-2 + 3.0543e-2 * turbidity + 3.797e-4 * turbidity * turbidity
 }
 
-/// How that depends on the elevation of the sun (Rigollier and others 2000, Eq 19 and 20).
+/// Returns the dependence of diffuse light on the elevation of the sun (Rigollier and others 2000, Eq 19 and 20).
 fn diffuse_angular(turbidity: f64, sine: f64) -> f64 {
     let (t, least) = (turbidity, 2e-3 / diffuse_at_zenith(turbidity));
     let a0 = 2.6463e-1 - 6.1581e-2 * t + 3.1408e-3 * t * t;
@@ -221,8 +223,8 @@ mod tests {
 
     #[test]
     fn the_position_of_reda_and_andreas_example_is_met() {
-        // Reda and Andreas (2004): 17 October 2003, 19:30:30 UT, 39.742476 N, 105.1786 W: zenith angle 50.11162 degrees with
-        // 0.016 degrees of refraction, azimuth 194.34024 degrees.
+        // Reda and Andreas (2004): 17 October 2003, 19:30:30 UT, 39.742476 N, 105.1786 W: zenith angle 50.11162 degrees
+        // with 0.016 degrees of refraction, azimuth 194.34024 degrees.
         let golden = place(39.742_476, -105.1786, [2003, 10, 17]);
         let sun = golden.sun(19.0 + 30.5 / 60.0);
         assert!((sun.azimuth_deg - 194.340).abs() < 0.01, "{sun:?}");

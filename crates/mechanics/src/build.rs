@@ -1,4 +1,4 @@
-//! Plant -> mechanism.
+//! Turns a plant into a mechanism.
 
 use base::{Counted, Report, Run};
 use glam::{DMat3, DVec3};
@@ -10,21 +10,21 @@ use crate::line::{Line, Lines, Weight, is_fruit, place_of};
 use crate::mechanism::{Runs, outer, parallel};
 use crate::{Body, Capsule, MechanicsError, Mechanism, SpringJoint, Stalk, WoodGroup};
 
-/// How a plant becomes a mechanism.
+/// Settings of the conversion of a plant to a mechanism.
 ///
 /// ```
 /// assert_eq!(mechanics::MechanicsSpec::default().most_joints, 200);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MechanicsSpec {
-    /// Hinges, at most; two make a joint. Default 200.
+    /// Most hinges; two make a joint. Default 200.
     pub most_joints: u32,
-    /// The group of the woody axes; stems and stalks that are green are so in any. Default hardwood.
+    /// Group of the woody axes; green stems and stalks count as green in any group. Default hardwood.
     pub group: WoodGroup,
-    /// Share of critical damping with which each limb swings in its lowest mode, above 0. Default 0.1: trees and stems in
-    /// still air have 0.02 to 0.2 (Moore and Maguire 2004 give the range of trees).
+    /// Share of critical damping with which each limb swings in its lowest mode, above 0. Default 0.1: trees and stems
+    /// in still air have 0.02 to 0.2 (Moore and Maguire 2004 give the range of trees).
     pub damping_ratio: f64,
-    /// Metres per second squared, downwards; 0 for none. Default 9.81.
+    /// Gravity, metres per second squared, downwards; 0 for none. Default 9.81.
     pub gravity: f64,
 }
 
@@ -34,37 +34,38 @@ impl Default for MechanicsSpec {
     }
 }
 
-/// Gravity of the reference load where the mechanism has none, m/s2: only ratios of energies matter.
+/// Gravity of the reference load if the mechanism has none, m/s2: only ratios of energies matter.
 const REFERENCE_GRAVITY: f64 = 9.81;
 
-/// Capsules of a mechanism, at most: the largest.
+/// Most capsules of a mechanism; the largest are kept.
 const MOST_CAPSULES: usize = 1000;
 
-/// A capsule follows wood that bends away from its line by less than this share of its length.
+/// Deviation of wood from a capsule's axis, as a share of its length, above which the capsule is divided.
 const STRAIGHT: f64 = 0.05;
 
-/// Added to the inertia about each axis as a share of its trace, so that no axis has more than the other two together
-/// after numbers were rounded for a file (flat bodies have just as much).
+/// Share of the trace of the inertia that is added about each axis, so that no axis exceeds the sum of the other two
+/// after the numbers are rounded for a file (for flat bodies they are equal).
 const ROUNDING: f64 = 1e-5;
 
-/// Inertia about any axis of any body, at least, kg m2: a thousandth of what the least limb has
+/// Least inertia about any axis of any body, kg m2: a thousandth of that of the lightest limb
 /// (`choice::LIGHTEST_KG_M2`), so that a hair is still a body for `MuJoCo`.
 const LEAST_INERTIA_KG_M2: f64 = 1e-12;
 
-/// Makes rigid bodies and springy joints of a plant.
+/// Converts a plant to rigid bodies and springy joints.
 ///
-/// Guaranteed: at most [`MechanicsSpec::most_joints`] hinges; the masses of the bodies are volume times density of all wood
-/// above the ground and the weight of all organs; the plant rests in the pose that it was made in; a fruit that can break off
-/// hangs on a stalk that holds twice its weight, on wood that is not too light for a simulator to hold it; the same bits on every
-/// platform. Roots are held by the soil and weigh nothing; stubs, and stalks of single fruits that can break off, do not bend.
-/// Not modelled: torsion of wood, growth stresses, tapering of a joint's run (its compliance is that of the tapered wood), collisions of the plant with itself.
+/// Guaranteed: at most [`MechanicsSpec::most_joints`] hinges; the masses of the bodies are volume times density of all
+/// wood above the ground plus the weight of all organs; the plant rests in the pose in which it was made; a fruit that
+/// can break off hangs on a stalk that holds twice its weight, on wood that is heavy enough for a simulator to hold it;
+/// the same bits on every platform. Roots are held by the soil and weigh nothing; stubs, and stalks of single fruits
+/// that can break off, do not bend. Not modelled: torsion of wood, growth stresses, the taper of a joint's run (its
+/// compliance is that of the tapered wood), collisions of the plant with itself.
 /// Cost: linear in nodes and organs; some 0.1 s for the frequencies of 200 hinges.
 ///
 /// Joints: see `docs/engines/robots.md`. Euler-Bernoulli beams, I = pi r^4 / 4, k = E I / L; the frequency of a limb by
 /// Dunkerley (1894).
 ///
 /// # Errors
-/// [`MechanicsError`] of a plant without stems, without thickness or beyond the budget.
+/// [`MechanicsError`] for a plant without stems, without thickness or beyond the budget.
 pub fn articulate(
     plant: &Plant,
     spec: &MechanicsSpec,
@@ -103,7 +104,7 @@ pub fn articulate(
     Ok(made)
 }
 
-/// Where the plant stands: the foot of its first axis on the ground that is not below it.
+/// Returns the place where the plant stands: the foot of its first axis on the ground that is not below it.
 fn foot(plant: &Plant) -> DVec3 {
     let standing = plant.axes.iter().find(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
     standing.map_or(DVec3::ZERO, |a| plant.nodes.position[a.nodes.start as usize])
@@ -127,12 +128,12 @@ fn check(lines: &Lines) -> Result<(), MechanicsError> {
     Ok(())
 }
 
-/// A body while masses are added to it.
+/// A body under construction.
 #[derive(Debug)]
 struct Draft {
     body: Body,
     first: DVec3,
-    /// About the body's origin.
+    /// Inertia about the body's origin.
     about_origin: DMat3,
 }
 
@@ -163,22 +164,22 @@ impl Draft {
         self.about_origin += own + parallel(mass, r);
     }
 
-    /// Adds a frustum of wood, as a cylinder of its mean radius whose mass is the frustum's.
+    /// Adds a frustum of wood, as a cylinder of the same mean radius and mass.
     fn add_wood(&mut self, line: &Line, from: f64, to: f64) {
-        let ((p, a), (q, b)) = (line.at(from), line.at(to));
+        let ((p, a), (q, b)) = (line.point_and_radius_at(from), line.point_and_radius_at(to));
         let (mass, length) = (line.mass(from, to), p.distance(q));
         let (Some(along), radius) = ((q - p).try_normalize(), f64::midpoint(a, b)) else { return };
         let round = mass * radius * radius / 2.0;
         let across = mass * (3.0 * radius * radius + length * length) / 12.0;
         let own = DMat3::IDENTITY * across + outer(along, along) * (round - across);
-        // The centre of a frustum lies towards its thicker end.
+        // The centroid of a frustum lies towards its thicker end.
         let thick = a * a + a * b + b * b;
         let share = if thick > 0.0 { (a * a + 2.0 * a * b + 3.0 * b * b) / (4.0 * thick) } else { 0.5 };
         self.add(mass, p.lerp(q, share), own);
         self.body.wood_area_m2 += (a + b) * length;
     }
 
-    /// Adds an organ, as a ball of its reach.
+    /// Adds an organ, as a ball of its radius.
     fn add_organ(&mut self, weight: &Weight) {
         let own = DMat3::IDENTITY * (0.4 * weight.mass * weight.reach_m * weight.reach_m);
         self.add(weight.mass, weight.centre, own);
@@ -206,7 +207,7 @@ struct Build<'a> {
 }
 
 impl Build<'_> {
-    /// The bodies of an axis: the first part moves with what bears it, and a new body begins at each bend.
+    /// Makes the bodies of an axis: the first part moves with its bearer, and a new body begins at each bend.
     fn axis(&mut self, row: usize, bends: &[Bend]) {
         let line = &self.lines.all[row];
         let length = line.length();
@@ -214,12 +215,12 @@ impl Build<'_> {
         let mut runs: Runs = vec![(0.0, body)];
         let mut from = 0.0;
         let ends = bends.iter().skip(1).map(|bend| bend.arc).chain([length]);
-        // A tip that runs out to nothing would be a body without mass.
+        // A tip that tapers to nothing would be a body without mass.
         let heavy = bends.iter().zip(ends).filter(|(bend, end)| line.mass_between(bend.arc, *end) > 0.0);
         for (k, (bend, _)) in heavy.enumerate() {
             self.wood(body, line, from, bend.arc);
             let name = format!("{}_{}_{}", word(line.kind), row + 1, k + 1);
-            let mut draft = Draft::new(name, Some(body), line.at(bend.arc).0);
+            let mut draft = Draft::new(name, Some(body), line.point_and_radius_at(bend.arc).0);
             let tangent = line.tangent(bend.arc);
             let across = tangent.any_orthonormal_vector();
             draft.body.axis = Some(AxisId::new(row));
@@ -238,7 +239,7 @@ impl Build<'_> {
         self.runs.push(runs);
     }
 
-    /// The body that has a place of an axis.
+    /// Returns the body to which a place of an axis belongs.
     fn body_at(&self, axis: usize, arc: f64) -> usize {
         let (runs, length) = (&self.runs[axis], self.lines.all[axis].length());
         let share = if length > 0.0 { arc / length } else { 0.0 };
@@ -256,11 +257,11 @@ impl Build<'_> {
         capsules(line, &stops, &mut draft.body.capsules);
     }
 
-    /// Adds the organs; for each organ the row of its body. Fruits that can break off are bodies of their own, the others part of
-    /// what bears them.
+    /// Adds the organs and returns the body of each. Fruits that can break off are bodies of their own, the others are
+    /// part of their bearer.
     fn organs(&mut self, fruits: &Fruits, report: &mut Report) -> Vec<usize> {
         let bearers: Vec<usize> = self.plant.organs.iter().map(|organ| self.bearer_of(organ)).collect();
-        // Of its wood: leaves weigh little, and other fruits hang themselves.
+        // The mass of its wood alone: leaves weigh little, and other fruits hang by welds themselves.
         let wood: Vec<f64> = self.bodies.iter().map(|draft| draft.body.mass).collect();
         let hanging = fruits.breakable(|row| wood[bearers[row]], report);
         let mut rows = Vec::with_capacity(bearers.len());
@@ -283,7 +284,7 @@ impl Build<'_> {
         rows
     }
 
-    /// The body of the wood that an organ sits on; the one on the ground of an organ without.
+    /// Returns the body of the wood that an organ sits on; for an organ without a bearer, the body on the ground.
     fn bearer_of(&self, organ: &Organ) -> usize {
         let place = organ.bearer.map(|node| place_of(self.plant, &self.lines.all, node));
         place.map_or(0, |(axis, arc)| self.body_at(axis, arc))
@@ -301,13 +302,14 @@ const fn word(kind: AxisKind) -> &'static str {
     }
 }
 
-/// Capsules along a part of an axis, one for each piece that is straight enough; each has the piece's volume without its ends.
+/// Makes capsules along a part of an axis, one for each piece that is straight enough; each has the volume of its
+/// piece, not counting its ends.
 fn capsules(line: &Line, stops: &[f64], out: &mut Vec<Capsule>) {
     let (Some(&from), Some(&to)) = (stops.first(), stops.last()) else { return };
-    let ((p, _), (q, _)) = (line.at(from), line.at(to));
+    let ((p, _), (q, _)) = (line.point_and_radius_at(from), line.point_and_radius_at(to));
     let volume = line.mass_between(from, to) / line.tissue.density_kg_m3;
     let radius_m = (volume / (base::ops::PI * (to - from))).sqrt();
-    let away = |k: &usize| geom::nearest_on_polyline3(&[p, q], line.at(stops[*k]).0).0;
+    let away = |k: &usize| geom::nearest_on_polyline3(&[p, q], line.point_and_radius_at(stops[*k]).0).0;
     let farthest = (1..stops.len() - 1).map(|k| (away(&k), k)).reduce(|a, b| if b.0 > a.0 { b } else { a });
     match farthest.filter(|(distance, _)| *distance > radius_m.max(STRAIGHT * (to - from))) {
         Some((_, k)) => {
@@ -319,7 +321,7 @@ fn capsules(line: &Line, stops: &[f64], out: &mut Vec<Capsule>) {
     }
 }
 
-/// Leaves the largest capsules.
+/// Removes all but the largest capsules.
 fn keep_largest(bodies: &mut [Body]) {
     let mut volumes: Vec<f64> = bodies.iter().flat_map(|b| &b.capsules).map(Capsule::volume_m3).collect();
     if volumes.len() <= MOST_CAPSULES {

@@ -1,35 +1,36 @@
-//! Which places of a plant become joints.
+//! Chooses the places of a plant that become joints.
 
 use crate::line::{Line, Lines, Step};
 
-/// Joints of one axis, at most: so many that the midpoint rule is within half a per cent (1 / 4 n^2).
+/// Most joints of one axis: with this number the midpoint rule is within half a per cent (1 / 4 n^2).
 const MOST_ON_AXIS: u32 = 8;
 
-/// Joints do not swing by themselves faster than this, radians a second: a stiffer limb would need a time step below half
-/// a millisecond, and moves too little to be seen.
+/// Highest natural frequency of a joint, radians a second: a stiffer limb would need a time step below half a
+/// millisecond, and moves too little to be seen.
 const FASTEST_RAD_S: f64 = 2000.0;
 
-/// What a joint moves has at least this polar inertia, kg m2: that of a tenth of a gram at 3 mm. Less is nothing that a simulator
-/// should spend a body on, and `MuJoCo` refuses 1e-15.
+/// Least polar inertia of the limb that a joint moves, kg m2: that of a tenth of a gram at 3 mm. A lighter limb is not
+/// worth a body of a simulator, and `MuJoCo` refuses 1e-15.
 const LIGHTEST_KG_M2: f64 = 1e-9;
 
-/// Where an axis bends, and how easily.
+/// Place where an axis bends, with its compliance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bend {
     /// Arc length, metres.
     pub(crate) arc: f64,
-    /// Integral of ds / (E I) over the run of the axis that it stands for, radians per newton metre.
+    /// Integral of ds / (E I) over the run of the axis that the joint represents, radians per newton metre.
     pub(crate) compliance: f64,
 }
 
-/// The bends of each axis, `most` in all at most.
+/// Chooses the bends of each axis, at most `most` in all.
 ///
-/// An axis with bending energy U under the reference load that has n joints lacks U / 4 n^2 of it (the error of the midpoint
-/// rule for a rod with a weight at its end), and U without any. Joints are given one by one to the axis where the energy that
-/// is lacking falls most; all other axes are rigid with what bears them. Within an axis each joint stands for a run with an
-/// even share of the integral of (c F^2)^(1/3), where c is the compliance of a metre and F the geometric mean of the weights borne there
-/// and at the foot: the division with the least error, for a hand that pulls at the tip, too. It stands at the run's centre of compliance, so that a run bends as far and as high up as
-/// the beam does.
+/// An axis with bending energy U under the reference load and n joints lacks U / 4 n^2 of it (the error of the midpoint
+/// rule for a rod with a weight at its end), and U without any joint. Joints are given one by one to the axis whose
+/// lacking energy falls most; all other axes are rigidly fixed to their bearers. Within an axis each joint represents a
+/// run with an even share of the integral of (c F^2)^(1/3), where c is the compliance of a metre and F the geometric
+/// mean of the weights borne there and at the foot: the division with the least error, also for a hand that pulls at
+/// the tip. The joint stands at the run's centre of compliance, so that a run bends as far and as high up as the beam
+/// does.
 pub(crate) fn choose(lines: &Lines, most: u32) -> Vec<Vec<Bend>> {
     let mut counts = vec![0_u32; lines.all.len()];
     let energies: Vec<f64> =
@@ -38,7 +39,7 @@ pub(crate) fn choose(lines: &Lines, most: u32) -> Vec<Vec<Bend>> {
     for _ in 0..most {
         let gains = (0..counts.len()).filter(|&row| counts[row] < limits[row]);
         let gains = gains.map(|row| (gain(energies[row], counts[row]), row)).filter(|(gain, _)| *gain > 0.0);
-        // The first of equal ones.
+        // Among equal gains keep the first.
         let best = gains.reduce(|a, b| if b.0 > a.0 { b } else { a });
         let Some((_, row)) = best else { break };
         counts[row] += 1;
@@ -46,7 +47,7 @@ pub(crate) fn choose(lines: &Lines, most: u32) -> Vec<Vec<Bend>> {
     lines.steps.iter().zip(counts).map(|(steps, count)| bends(steps, count)).collect()
 }
 
-/// The energy of an axis that may bend at all.
+/// Returns the bending energy of an axis; 0 if it cannot bend.
 fn bending_energy(line: &Line, steps: &[Step]) -> f64 {
     if line.is_buried || line.is_rigid {
         return 0.0;
@@ -54,14 +55,14 @@ fn bending_energy(line: &Line, steps: &[Step]) -> f64 {
     steps.iter().map(|s| s.energy).sum()
 }
 
-/// How much less energy is lacking with one joint more.
+/// Returns the decrease of the lacking energy with one more joint.
 fn gain(energy: f64, joints: u32) -> f64 {
     let lacking = |n: u32| if n == 0 { energy } else { energy / (4.0 * f64::from(n * n)) };
     lacking(joints) - lacking(joints + 1)
 }
 
-/// Joints at which a limb is still slow enough. The highest frequency of a chain is about n^2 times its own (Dunkerley 1894);
-/// what stands between two joints has the inertia of its wood alone, however much the tip bears.
+/// Returns the most joints with which a limb is still slow enough. The highest frequency of a chain is about n^2 times
+/// its own (Dunkerley 1894); a part between two joints has the inertia of its wood alone, however much the tip bears.
 fn most_joints(steps: &[Step]) -> u32 {
     let most = |slowness: f64| {
         let most = (FASTEST_RAD_S * slowness.sqrt()).sqrt();
@@ -82,7 +83,7 @@ fn bends(steps: &[Step], count: u32) -> Vec<Bend> {
     let mut passed = 0.0;
     for step in steps {
         let own = weight(step);
-        // A step that lies across a border is shared out.
+        // A step that lies across a border is divided.
         let mut from = 0.0;
         while from < 1.0 && count > 0 {
             let at = (passed + own * from) / whole * f64::from(count);
@@ -111,12 +112,12 @@ struct Sums {
     compliance: f64,
     /// Compliance times arc length.
     first: f64,
-    /// Compliance times the inertia of what is borne.
+    /// Compliance times the inertia of the borne load.
     slowness: f64,
 }
 
 impl Sums {
-    /// Whether what a joint here would move is neither too quick nor too light.
+    /// Whether the limb that a joint here would move is neither too fast nor too light.
     fn can_swing(&self) -> bool {
         let slow = self.slowness * FASTEST_RAD_S * FASTEST_RAD_S >= 1.0;
         self.compliance > 0.0 && slow && self.slowness >= LIGHTEST_KG_M2 * self.compliance

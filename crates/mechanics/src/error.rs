@@ -1,9 +1,9 @@
-//! What can go wrong here.
+//! Errors of the conversion.
 
 use base::OverBudget;
 use plant::PlantFault;
 
-/// Why a plant has no mechanism.
+/// Reason why a plant cannot be made into a mechanism.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MechanicsError {
@@ -13,13 +13,13 @@ pub enum MechanicsError {
          (.obj, .glb) as one rigid body"
     )]
     NoStem,
-    /// Axes without thickness have neither mass nor stiffness.
+    /// The axes have no thickness, and so neither mass nor stiffness.
     #[error(
         "the stems and branches of the plant have no thickness, so they have neither mass nor stiffness: give them radii \
          (a pipe model, wider strokes) and export again"
     )]
     NoThickness,
-    /// Masses or stiffnesses that are no finite numbers above 0.
+    /// A mass or stiffness is not a finite number above 0.
     #[error("{what} of the plant is {value}, which no simulator takes: check the plant's size and unit")]
     Number {
         /// The quantity.
@@ -30,7 +30,7 @@ pub enum MechanicsError {
     /// The plant is not sound: a bug of its maker.
     #[error("the plant is not sound: {0}")]
     Unsound(PlantFault),
-    /// More nodes and organs than the budget allows.
+    /// The plant has more nodes and organs than the budget allows.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
 }

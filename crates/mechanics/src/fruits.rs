@@ -1,4 +1,4 @@
-//! Which fruits can break off, and which axes bear too much of them.
+//! Finds the fruits that can break off, and the axes that are overloaded with fruits.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use plant::{AxisKind, Plant};
 
 use crate::line::{Lines, Step, is_fruit, place_of};
 
-/// Fruits that can break off, at most: each is free in space and costs as much as three joints.
+/// Most fruits that can break off: each moves freely and costs as much as three joints.
 const MOST_BREAKABLE: usize = 24;
 
-/// A stalk holds at least this many times the weight of its fruit: with less, a fruit that sways in a breeze, which pulls with
-/// as much again, would tear off.
+/// Least ratio of a stalk's strength to the weight of its fruit: with less, a fruit that sways in a breeze, which
+/// doubles the pull, would tear off.
 const LEAST_HOLD: f64 = 2.0;
 
-/// A fruit that hangs by a weld has at most this many times the mass of the wood that it hangs on. The welds of simulators are
-/// springs that are scaled by the masses at both ends: on a shaken limb in `MuJoCo`, such a fruit stays within 0.7 mm of its
-/// place, one of 100 times the mass within 1.3 mm, and one of 3,000 times falls off.
+/// Most mass of a fruit that hangs by a weld, as a multiple of the mass of the wood that it hangs on. The welds of
+/// simulators are springs that are scaled by the masses at both ends: on a shaken limb in `MuJoCo`, such a fruit stays
+/// within 0.7 mm of its place, one of 100 times the mass within 1.3 mm, and one of 3,000 times falls off.
 const MOST_TIMES_BEARER: f64 = 50.0;
 
 /// A fruit that sits on an axis above the ground with a thickness.
@@ -24,22 +24,22 @@ const MOST_TIMES_BEARER: f64 = 50.0;
 struct Hanging {
     organ: usize,
     kilograms: f64,
-    /// The pull at which its stalk breaks, newtons: strength times cross-section.
+    /// Pull at which its stalk breaks, newtons: strength times cross-section.
     break_force_n: f64,
 }
 
 /// The fruits of a plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Fruits {
-    /// On stalks that hold them with a margin, the heaviest first.
+    /// Fruits on stalks that hold them with a margin, the heaviest first.
     held: Vec<Hanging>,
-    /// How many hang on stalks that do not.
+    /// Number of fruits on stalks without that margin.
     weak: usize,
     all: usize,
 }
 
 impl Fruits {
-    /// Finds the fruits that their stalks hold, and lets a stalk that bears one of them alone be rigid: by itself it weighs so
+    /// Finds the fruits that their stalks hold, and makes a stalk that bears only such a fruit rigid: it weighs so
     /// little that nothing could hang on it.
     pub(crate) fn new(plant: &Plant, lines: &mut Lines, gravity: f64) -> Self {
         let mut own = Self { held: Vec::new(), weak: 0, all: 0 };
@@ -52,7 +52,7 @@ impl Fruits {
             let Some(node) = plant.organs[organ].bearer else { continue };
             let (axis, arc) = place_of(plant, &lines.all, node);
             let line = &mut lines.all[axis];
-            let radius = line.at(arc).1;
+            let radius = line.point_and_radius_at(arc).1;
             if radius <= 0.0 || weight.mass <= 0.0 || weight.reach_m <= 0.0 {
                 continue;
             }
@@ -68,8 +68,8 @@ impl Fruits {
         own
     }
 
-    /// The force at which each fruit breaks off that can, by its organ's row. `bearer_kg`: the mass of the wood that an organ hangs
-    /// on.
+    /// Returns the breaking force of each fruit that can break off, by its organ's row. `bearer_kg`: the mass of the
+    /// wood that an organ hangs on.
     pub(crate) fn breakable(
         &self,
         bearer_kg: impl Fn(usize) -> f64,
@@ -88,7 +88,8 @@ impl Fruits {
         can.into_iter().map(|fruit| (fruit.organ, fruit.break_force_n)).collect()
     }
 
-    /// Says which fruits are fixed, and why. `light`: on wood that is too light for them; `can`: those that could break off.
+    /// Warns which fruits are fixed, and why. `light`: those on wood that is too light for them; `can`: those that
+    /// could break off.
     fn tell(&self, (light, can): (usize, usize), report: &mut Report) {
         let (all, weak) = (self.all, self.weak);
         if weak > 0 {
@@ -118,7 +119,7 @@ impl Fruits {
     }
 }
 
-/// How many organs and axes sit on each axis.
+/// Returns how many organs and axes sit on each axis.
 fn loads(plant: &Plant) -> Vec<usize> {
     let mut loads = vec![0; plant.axes.len()];
     let bearers =
@@ -129,7 +130,8 @@ fn loads(plant: &Plant) -> Vec<usize> {
     loads
 }
 
-/// Warns of stems and branches that would break under their fruits at rest. Stalks bend until their fruits hang below them.
+/// Warns of stems and branches that would break under their fruits at rest. Stalks are exempt: they bend until their
+/// fruits hang below them.
 pub(crate) fn tell_of_overload(lines: &Lines, report: &mut Report) {
     let stiff = lines.all.iter().zip(&lines.steps).filter(|(line, _)| line.kind != AxisKind::Petiole);
     let most = |steps: &[Step]| steps.iter().map(|step| step.fruit_stress).fold(0.0, f64::max);

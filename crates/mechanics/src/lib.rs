@@ -4,12 +4,12 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `tissue` | [`Tissue`], [`WoodGroup`]: how stiff, heavy and strong wood and green stems are |
-//! | `line` | axes as bent lines with taper; what each place of them bears |
-//! | `choice` | which places become joints |
+//! | `tissue` | [`Tissue`], [`WoodGroup`]: stiffness, density and strength of wood and green stems |
+//! | `line` | axes as polylines with taper; the load borne at each place |
+//! | `choice` | the choice of the places that become joints |
 //! | `mechanism` | [`Mechanism`]: bodies, joints, capsules, fruits on stalks that break |
-//! | `fruits` | which fruits can break off, and which axes bear too much of them |
-//! | `build` | [`articulate`]: the whole way |
+//! | `fruits` | the fruits that can break off, and the axes that are overloaded with fruits |
+//! | `build` | [`articulate`]: the whole conversion |
 //! | `dynamics` | [`Mechanism::frequencies`], [`Mechanism::deflection`]: small movements about the rest pose |
 
 mod build;

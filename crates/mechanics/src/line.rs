@@ -1,4 +1,4 @@
-//! Axes as bent lines with taper, and what each place of them bears.
+//! Axes as polylines with taper, and the load borne at each place.
 
 use std::collections::BTreeMap;
 
@@ -9,17 +9,17 @@ use plant::{AxisKind, NodeId, OrganKind, Plant, Shape};
 use crate::tissue::{Weighed, weigh};
 use crate::{Tissue, WoodGroup};
 
-/// The stiffness of a tip is that of at least this share of its axis's mean radius: drawn tips run out to nothing, and
-/// would be infinitely soft.
+/// Least radius for stiffness as a share of the mean radius of the axis: drawn tips taper to nothing, and would be
+/// infinitely soft.
 const THINNEST_SHARE: f64 = 0.25;
 
-/// The smallest radius that stiffness is computed from, metres: 0.05 mm, the finest of hairs.
+/// Least radius for stiffness, metres: 0.05 mm, the finest of hairs.
 const THINNEST_M: f64 = 5e-5;
 
-/// Steps along an axis within which compliance and load are even, at least.
+/// Least number of steps along an axis, within which compliance and load are constant.
 const STEPS: usize = 16;
 
-/// Masses at places: how many kilograms, and their first and second moments about the plant's origin.
+/// A set of masses: their sum, and their first and second moments about the plant's origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Masses {
     pub(crate) mass: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Masses {
     pub(crate) first: DVec3,
     /// Mass times squared distance from the origin, kg m2.
     pub(crate) second: f64,
-    /// The part of the mass that is fruits, kilograms.
+    /// Share of the mass that is fruits, kilograms.
     fruits: f64,
 }
 
@@ -48,20 +48,20 @@ impl Masses {
         self.fruits += other.fruits;
     }
 
-    /// The polar second moment about a place, kg m2: for slender limbs that about any axis across.
+    /// Returns the polar second moment about a place, kg m2: for slender limbs, that about any transverse axis.
     fn about(&self, place: DVec3) -> f64 {
         (self.second - 2.0 * self.first.dot(place) + self.mass * place.length_squared()).max(0.0)
     }
 }
 
-/// An organ as a weight.
+/// An organ as a mass.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weight {
     pub(crate) mass: f64,
     pub(crate) centre: DVec3,
-    /// One side of a leaf or petal, square metres.
+    /// Area of one side of a leaf or petal, square metres.
     pub(crate) area_m2: f64,
-    /// Half of its longest side, metres.
+    /// Half of the longest side of its bounding box, metres.
     pub(crate) reach_m: f64,
 }
 
@@ -73,19 +73,20 @@ pub(crate) struct Step {
     pub(crate) to: f64,
     /// Integral of ds / (E I), radians per newton metre.
     pub(crate) compliance: f64,
-    /// Weight of what it bears in its middle, newtons over g: kilograms.
+    /// Mass borne at its middle, kilograms.
     pub(crate) borne: f64,
     /// Bending energy under the reference load, joules.
     pub(crate) energy: f64,
-    /// Compliance times polar inertia of what it bears, square seconds (a term of Dunkerley's sum).
+    /// Compliance times the polar inertia of the borne load, square seconds (a term of Dunkerley's sum).
     pub(crate) slowness: f64,
-    /// The same of the axis's own wood alone, s2.
+    /// The same for the axis's own wood alone, s2.
     pub(crate) bare_slowness: f64,
-    /// Bending stress at rest over what breaks the tissue, where most of what it bears are fruits; 0 elsewhere.
+    /// Ratio of the bending stress at rest to the strength of the tissue, if most of the borne load is fruits;
+    /// otherwise 0.
     pub(crate) fruit_stress: f64,
 }
 
-/// An axis as a bent line.
+/// An axis as a polyline.
 #[derive(Clone, Debug)]
 pub(crate) struct Line {
     pub(crate) points: Vec<DVec3>,
@@ -94,11 +95,11 @@ pub(crate) struct Line {
     pub(crate) arcs: Vec<f64>,
     pub(crate) tissue: Tissue,
     pub(crate) kind: AxisKind,
-    /// The axis that bears it, and the arc length there; none on the ground.
+    /// The axis that bears it, and the arc length there; `None` if it stands on the ground.
     pub(crate) bearer: Option<(usize, f64)>,
-    /// Below the ground, or on what is: held by the soil.
+    /// The axis is below the ground, or on one that is: held by the soil.
     pub(crate) is_buried: bool,
-    /// It moves with what bears it, however much it would bend.
+    /// The axis moves with its bearer, however much it would bend.
     pub(crate) is_rigid: bool,
 }
 
@@ -127,8 +128,8 @@ impl Line {
         self.arcs.last().copied().unwrap_or(0.0)
     }
 
-    /// Position and radius at an arc length.
-    pub(crate) fn at(&self, arc: f64) -> (DVec3, f64) {
+    /// Returns position and radius at an arc length.
+    pub(crate) fn point_and_radius_at(&self, arc: f64) -> (DVec3, f64) {
         let after = self.arcs.partition_point(|a| *a <= arc).clamp(1, self.arcs.len() - 1);
         let (s, t) = (self.arcs[after - 1], self.arcs[after]);
         let share = if t > s { ((arc - s) / (t - s)).clamp(0.0, 1.0) } else { 0.0 };
@@ -136,14 +137,17 @@ impl Line {
         (point, base::ops::lerp(self.radii[after - 1], self.radii[after], share))
     }
 
-    /// The direction at an arc length, a unit vector.
+    /// Returns the direction at an arc length, a unit vector.
     pub(crate) fn tangent(&self, arc: f64) -> DVec3 {
         let reach = self.length() * 1e-3;
-        let (a, b) = (self.at((arc - reach).max(0.0)).0, self.at((arc + reach).min(self.length())).0);
+        let (a, b) = (
+            self.point_and_radius_at((arc - reach).max(0.0)).0,
+            self.point_and_radius_at((arc + reach).min(self.length())).0,
+        );
         (b - a).try_normalize().unwrap_or(DVec3::Y)
     }
 
-    /// Two arc lengths and those of its points between them, in order, each once.
+    /// Returns two arc lengths and those of the points between them, in order, each once.
     pub(crate) fn stops(&self, from: f64, to: f64) -> Vec<f64> {
         let inner = self.arcs.iter().copied().filter(|a| *a > from && *a < to);
         let mut all: Vec<f64> = core::iter::once(from).chain(inner).chain([to]).collect();
@@ -158,45 +162,48 @@ impl Line {
         if self.length() > 0.0 { area / self.length() } else { 0.0 }
     }
 
-    /// The integral of ds / (E I) with I = pi r^4 / 4 of a radius that changes evenly; 0 where there is no wood to bend.
+    /// Returns the integral of ds / (E I) with I = pi r^4 / 4 over a linearly changing radius; 0 if there is no wood to
+    /// bend.
     fn compliance(&self, from: f64, to: f64, thinnest: f64) -> f64 {
         if self.mass(from, to) <= 0.0 {
             return 0.0;
         }
-        let (a, b) = (self.at(from).1.max(thinnest), self.at(to).1.max(thinnest));
+        let (a, b) =
+            (self.point_and_radius_at(from).1.max(thinnest), self.point_and_radius_at(to).1.max(thinnest));
         let fourth = (a * a + a * b + b * b) / (3.0 * a * a * a * b * b * b);
         4.0 * (to - from) * fourth / (PI * self.tissue.modulus_pa)
     }
 
-    /// The mass between two places within one straight piece, kilograms: that of a frustum.
+    /// Returns the mass between two places within one straight piece, kilograms: that of a frustum.
     pub(crate) fn mass(&self, from: f64, to: f64) -> f64 {
-        let (a, b) = (self.at(from).1, self.at(to).1);
+        let (a, b) = (self.point_and_radius_at(from).1, self.point_and_radius_at(to).1);
         self.tissue.density_kg_m3 * PI / 3.0 * (to - from) * (a * a + a * b + b * b)
     }
 
-    /// The mass between two places, kilograms.
+    /// Returns the mass between two places, kilograms.
     pub(crate) fn mass_between(&self, from: f64, to: f64) -> f64 {
         self.stops(from, to).windows(2).map(|s| self.mass(s[0], s[1])).sum()
     }
 
-    /// The least radius that its stiffness and its stress are computed from, metres.
+    /// Returns the least radius for its stiffness and its stress, metres.
     fn thinnest(&self) -> f64 {
         (self.mean_radius() * THINNEST_SHARE).max(THINNEST_M)
     }
 
-    /// Bending stress 4 M / pi r^3 at rest over the strength of the tissue, where most of what is borne are fruits; 0 elsewhere.
+    /// Returns the ratio of the bending stress 4 M / pi r^3 at rest to the strength of the tissue, if most of the borne
+    /// load is fruits; otherwise 0.
     fn fruit_stress(&self, borne: &Masses, arc: f64, thinnest: f64, gravity: f64) -> f64 {
         if borne.fruits <= borne.mass / 2.0 {
             return 0.0;
         }
-        let (place, radius) = self.at(arc);
+        let (place, radius) = self.point_and_radius_at(arc);
         let arm = borne.first - place * borne.mass;
         let radius = radius.max(thinnest);
         let stress = 4.0 * gravity * base::ops::hypot(arm.x, arm.z) / (PI * radius * radius * radius);
         stress / self.tissue.strength_pa
     }
 
-    /// The steps, base first, without loads.
+    /// Makes the steps, base first, without loads.
     fn steps(&self) -> Vec<Step> {
         let thinnest = self.thinnest();
         let longest = self.length() / STEPS as f64;
@@ -225,7 +232,7 @@ impl Line {
     }
 }
 
-/// All axes of a plant, with their steps and what each bears.
+/// All axes of a plant, with their steps and the load on each.
 #[derive(Debug)]
 pub(crate) struct Lines {
     pub(crate) all: Vec<Line>,
@@ -249,10 +256,10 @@ impl Lines {
         lines
     }
 
-    /// Works out what each step bears, tips first: borne axes come after their bearers.
+    /// Computes the load on each step, tips first: borne axes come after their bearers.
     ///
-    /// The reference load is gravity along each of the three axes in turn, for the same wood must be stiff against its own
-    /// weight and wind from any side. With the mass m borne, r from the step to its centre, and the tangent t, the three
+    /// The reference load is gravity along each of the three axes in turn, for the same wood must resist its own weight
+    /// and wind from any side. With the mass m borne, r from the step to its centre, and the tangent t, the three
     /// moments without their torsion give the bending energy U = (L / 2 E I) (m g)^2 (|r|^2 + (r . t)^2).
     fn load(&mut self, plant: &Plant, gravity: f64) {
         let mut hanging: Vec<Vec<(f64, Masses)>> = vec![Vec::new(); self.all.len()];
@@ -271,9 +278,9 @@ impl Lines {
                 while let Some((_, load)) = loads.pop_if(|(arc, _)| *arc >= middle) {
                     borne.add(&load);
                 }
-                let (place, half) = (line.at(middle).0, line.mass(step.from, step.to) / 2.0);
-                let above = Masses::point(half, line.at(f64::midpoint(middle, step.to)).0);
-                let below = Masses::point(half, line.at(f64::midpoint(middle, step.from)).0);
+                let (place, half) = (line.point_and_radius_at(middle).0, line.mass(step.from, step.to) / 2.0);
+                let above = Masses::point(half, line.point_and_radius_at(f64::midpoint(middle, step.to)).0);
+                let below = Masses::point(half, line.point_and_radius_at(f64::midpoint(middle, step.from)).0);
                 borne.add(&above);
                 bare.add(&above);
                 step.bear(&borne, (place, line.tangent(middle)), gravity);
@@ -304,13 +311,13 @@ pub(crate) const fn is_fruit(kind: OrganKind) -> bool {
     matches!(kind, OrganKind::Fruit | OrganKind::Syncarp)
 }
 
-/// The axis of a node and the arc length there. The first node of a borne axis lies at its base.
+/// Returns the axis of a node and the arc length there. The first node of a borne axis lies at its base.
 pub(crate) fn place_of(plant: &Plant, lines: &[Line], node: NodeId) -> (usize, f64) {
     let axis = plant.nodes.axis[node.index()].index();
     (axis, lines[axis].arcs[node.index() - plant.axes[axis].nodes.start as usize])
 }
 
-/// The organs as weights. Cost: each shape is measured once for each kind of organ that has it.
+/// Returns the organs as masses. Cost: each shape is measured once for each kind of organ that has it.
 fn weights(plant: &Plant) -> Vec<Weight> {
     let mut known: BTreeMap<(usize, OrganKind), (Weighed, Middle)> = BTreeMap::new();
     let mut all = Vec::with_capacity(plant.organs.len());
@@ -329,7 +336,7 @@ fn weights(plant: &Plant) -> Vec<Weight> {
     all
 }
 
-/// The middle of the box around a shape at scale 1, and half of the box's longest side.
+/// Centre of the bounding box of a shape at scale 1, and half of its longest side.
 #[derive(Clone, Copy, Debug)]
 struct Middle {
     centre: DVec3,

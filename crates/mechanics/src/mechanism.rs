@@ -1,4 +1,4 @@
-//! What a simulator gets: rigid bodies, joints, capsules, stalks.
+//! The input of a simulator: rigid bodies, joints, capsules, stalks.
 
 use glam::{DMat3, DVec3};
 use plant::{AxisId, OrganId, Plant};
@@ -8,15 +8,16 @@ use plant::{AxisId, OrganId, Plant};
 pub struct SpringJoint {
     /// Unit vectors of the two hinges, at right angles to the limb and to one another.
     pub axes: [DVec3; 2],
-    /// Stiffness of each hinge, newton metres per radian: k = 1 / (integral of ds / E I), which is E I / L of an even run.
+    /// Stiffness of each hinge, newton metres per radian: k = 1 / (integral of ds / E I), which is E I / L of a uniform
+    /// run.
     pub stiffness: f64,
     /// Damping of each hinge, newton metre seconds per radian.
     pub damping: f64,
-    /// The angles at which the springs pull nothing, radians: with gravity, the plant then rests in the pose that it was made in.
+    /// Rest angles of the springs, radians: with gravity, the plant then rests in the pose in which it was made.
     pub rest_rad: [f64; 2],
 }
 
-/// A capsule for collisions, in the plant's coordinates; a ball where both ends are one.
+/// A capsule for collisions, in the plant's coordinates; a ball if both ends are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     /// One end of its line, metres.
@@ -28,62 +29,62 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// The volume of its cylinder and its two half balls, cubic metres.
+    /// Returns the volume of its cylinder and its two half balls, cubic metres.
     pub fn volume_m3(&self) -> f64 {
         let r = self.radius_m;
         base::ops::PI * r * r * (self.from.distance(self.to) + 4.0 / 3.0 * r)
     }
 }
 
-/// What holds a fruit: it breaks.
+/// Breakable stalk that holds a fruit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stalk {
-    /// Where the fruit hangs, in the plant's coordinates, metres.
+    /// Point where the fruit hangs, in the plant's coordinates, metres.
     pub at: DVec3,
-    /// The pull at which it breaks, newtons: the strength of its tissue times its cross-section.
+    /// Pull at which it breaks, newtons: the strength of its tissue times its cross-section.
     pub break_force_n: f64,
 }
 
 /// A rigid body of a plant. All coordinates are those of the plant, metres, +Y up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// A name that no other body of the mechanism has: letters, digits and `_`.
+    /// Name, unique in the mechanism: letters, digits and `_`.
     pub name: String,
-    /// The axis of the plant that its joint is on; none of the first body and of fruits.
+    /// The axis of the plant that its joint is on; `None` for the first body and for fruits.
     pub axis: Option<AxisId>,
-    /// The row of the body that it moves on; none for the one that stands on the ground, which is the first.
+    /// Row of the body that it moves on; `None` for the one that stands on the ground, which is the first.
     pub parent: Option<usize>,
-    /// The origin of its coordinates: where its joint is, or its stalk.
+    /// Origin of its coordinates: its joint or its stalk.
     pub origin: DVec3,
-    /// How it moves on its parent; none where it is fixed.
+    /// Joint to its parent; `None` if it is fixed.
     pub joint: Option<SpringJoint>,
-    /// Of a fruit, the stalk by which it hangs on its parent.
+    /// For a fruit, the stalk by which it hangs on its parent.
     pub stalk: Option<Stalk>,
-    /// Kilograms, above 0 but for a first body that has no part above the ground.
+    /// Mass, kilograms, above 0 except for a first body without a part above the ground.
     pub mass: f64,
     /// Centre of mass.
     pub centre: DVec3,
     /// Inertia about the centre of mass in the plant's axes, kg m2.
     pub inertia: DMat3,
-    /// Its shape for collisions: the thickest wood, and fruits. Leaves have none.
+    /// Collision shape: the thickest wood, and fruits. Leaves have none.
     pub capsules: Vec<Capsule>,
     /// Area of its wood seen from the side, square metres: twice the radius times the length.
     pub wood_area_m2: f64,
-    /// Area of one side of its leaves and petals, and the shadow of its fruits, square metres.
+    /// Area of one side of its leaves and petals plus the projected area of its fruits, square metres.
     pub leaf_area_m2: f64,
 }
 
-/// The inertia of a point about the origin, kg m2 (Huygens and Steiner).
+/// Returns the inertia of a point mass about the origin, kg m2 (Huygens and Steiner).
 pub(crate) fn parallel(mass: f64, r: DVec3) -> DMat3 {
     DMat3::IDENTITY * (mass * r.length_squared()) + outer(r, r) * -mass
 }
 
-/// The matrix that maps x to a (b . x).
+/// Returns the matrix that maps x to a (b . x).
 pub(crate) fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// Which part of an axis belongs to which body: from a share of its length on, until the next.
+/// Bodies along an axis: each from a share of its length on, until the next.
 pub(crate) type Runs = Vec<(f64, usize)>;
 
 /// A plant as rigid bodies and springy joints.
@@ -109,30 +110,32 @@ pub struct Mechanism {
     pub bodies: Vec<Body>,
     /// Gravity that the springs are set for, m/s2, downwards.
     pub gravity: f64,
-    /// The longest time step that simulates it well, seconds: 2 ms, or one over its highest frequency in radians a second,
-    /// which is half of what is stable.
+    /// Longest time step for a good simulation, seconds: 2 ms, or one over its highest frequency in radians a second,
+    /// which is half of the limit of stability; with fruits that can break off, a quarter of one over the highest
+    /// frequency of the wood without them.
     pub time_step_s: f64,
     pub(crate) runs: Vec<Runs>,
     pub(crate) organ_bodies: Vec<usize>,
 }
 
 impl Mechanism {
-    /// Kilograms of all bodies.
+    /// Returns the mass of all bodies, kilograms.
     pub fn mass(&self) -> f64 {
         self.bodies.iter().map(|b| b.mass).sum()
     }
 
-    /// Hinges: two for each joint.
+    /// Returns the number of hinges: two for each joint.
     pub fn joints(&self) -> usize {
         2 * self.bodies.iter().filter(|b| b.joint.is_some()).count()
     }
 
-    /// The body that an organ of the plant belongs to.
+    /// Returns the body that an organ of the plant belongs to.
     pub fn body_of_organ(&self, organ: OrganId) -> usize {
         self.organ_bodies.get(organ.index()).copied().unwrap_or(0)
     }
 
-    /// The body that has the part of an axis that is nearest to a place. `plant`: the one that it was made of.
+    /// Returns the body to which the part of an axis nearest to a place belongs. `plant`: the one that the mechanism
+    /// was made from.
     pub fn body_on_axis(&self, plant: &Plant, axis: AxisId, place: DVec3) -> usize {
         let Some(runs) = self.runs.get(axis.index()) else { return 0 };
         match runs.as_slice() {

@@ -1,4 +1,4 @@
-//! How stiff, heavy and strong the tissues of plants are.
+//! Stiffness, density and strength of the tissues of plants.
 
 use plant::{AxisKind, OrganKind, Plant, Shape};
 
@@ -9,7 +9,7 @@ pub struct Tissue {
     pub modulus_pa: f64,
     /// Density with its water, kilograms per cubic metre, above 0.
     pub density_kg_m3: f64,
-    /// Tensile stress at which it breaks, pascals, above 0.
+    /// Tensile strength, pascals, above 0.
     pub strength_pa: f64,
 }
 
@@ -28,12 +28,12 @@ pub enum WoodGroup {
 base::words!(WoodGroup { Hardwood = "hardwood", Softwood = "softwood", Green = "green" });
 
 impl WoodGroup {
-    /// The tissue of a group: a value in the middle of the range of its species, not of one species.
+    /// Returns the tissue of a group: a value in the middle of the range of its species, not of one species.
     ///
-    /// Green wood (Wood Handbook, Forest Products Laboratory 2010, chapter 5): modulus of hardwoods 7e9 to 11e9 Pa and of
-    /// softwoods 6e9 to 11e9, bending strength 45e6 to 75e6 and 35e6 to 60e6 Pa. Herbaceous stems as whole sections (Niklas
-    /// 1992, Plant Biomechanics): 0.1e9 to 2e9 Pa, strength 1e6 to 20e6. Densities are those of tissue full of water: 850 to
-    /// 1100.
+    /// Green wood (Wood Handbook, Forest Products Laboratory 2010, chapter 5): modulus of hardwoods 7e9 to 11e9 Pa and
+    /// of softwoods 6e9 to 11e9, bending strength 45e6 to 75e6 and 35e6 to 60e6 Pa. Herbaceous stems as whole sections
+    /// (Niklas 1992, Plant Biomechanics): 0.1e9 to 2e9 Pa, strength 1e6 to 20e6. Densities are those of tissue full of
+    /// water: 850 to 1100.
     pub const fn tissue(self) -> Tissue {
         match self {
             Self::Hardwood => Tissue { modulus_pa: 9e9, density_kg_m3: 1000.0, strength_pa: 6e7 },
@@ -42,8 +42,8 @@ impl WoodGroup {
         }
     }
 
-    /// The group that a plant shows to belong to: conifers by their needles, herbs by the names of the species that come
-    /// with Burgeon or by having stems and stalks alone, all others hardwood. Green stems and stalks are green in any group.
+    /// Infers the group of a plant: conifers by their needles, herbs by the names of the species that come with Burgeon
+    /// or by having stems and stalks alone; all others are hardwood. Green stems and stalks are green in any group.
     pub fn seen_in(plant: &Plant) -> Self {
         let name = plant.name.trim().to_lowercase();
         let has_needles = |s: &Shape| matches!(s, Shape::Blade(blade) if blade.needles.is_some());
@@ -58,7 +58,7 @@ impl WoodGroup {
         }
     }
 
-    /// The group of one axis of a plant of this group.
+    /// Returns the group of one axis of a plant of this group.
     pub(crate) const fn of_axis(self, kind: AxisKind) -> Self {
         match kind {
             AxisKind::Stem | AxisKind::Petiole => Self::Green,
@@ -79,22 +79,22 @@ const PETAL_KG_M2: f64 = 0.1;
 /// Density of fruits, discs and other fleshy bodies, kilograms per cubic metre: nearly that of water.
 const FLESH_KG_M3: f64 = 1000.0;
 
-/// What a shape weighs and catches as an organ of a kind, at scale 1.
+/// Mass and projected area of a shape as an organ of a kind, at scale 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weighed {
-    /// Kilograms.
+    /// Mass, kilograms.
     pub(crate) mass: f64,
-    /// One side of a sheet, the shadow of a body; square metres.
+    /// Area of one side of a sheet, projected area of a body; square metres.
     pub(crate) area_m2: f64,
-    /// A thin sheet: its mass grows with the area, and not with the volume.
+    /// The shape is a thin sheet: its mass scales with the area, not the volume.
     pub(crate) is_flat: bool,
 }
 
-/// Weighs a shape. Pots weigh nothing: they are no part of the plant.
+/// Computes mass and area of a shape. Pots weigh nothing: they are not part of the plant.
 pub(crate) fn weigh(kind: OrganKind, shape: &Shape) -> Weighed {
     let is_flat = matches!(shape, Shape::Blade(_) | Shape::Spline(_) | Shape::Sheet(_));
     let side = shape.one_side_m2();
-    // Half of a ball's surface is twice its shadow.
+    // Half of a ball's surface is twice its projected area.
     let area_m2 = if is_flat { side } else { side / 2.0 };
     let mass = match kind {
         OrganKind::Pot => return Weighed { mass: 0.0, area_m2: 0.0, is_flat },
@@ -105,7 +105,7 @@ pub(crate) fn weigh(kind: OrganKind, shape: &Shape) -> Weighed {
     Weighed { mass, area_m2, is_flat }
 }
 
-/// The volume of a round shape at scale 1, cubic metres; 0 of sheets.
+/// Returns the volume of a round shape at scale 1, cubic metres; 0 for sheets.
 fn volume_m3(shape: &Shape) -> f64 {
     use base::ops::PI;
     match shape {

@@ -1,11 +1,12 @@
-//! Where the picture is taken from: framing and projection.
+//! The camera of a picture: framing and projection.
 
 use base::ops;
 use glam::{DVec2, DVec3};
 
 use crate::spec::{PictureSpec, Pinhole, THREE_QUARTER, View};
 
-/// Half of the vertical opening of the perspective views: 11 degrees, a long lens that keeps stems straight.
+/// Half of the vertical angle of view of the perspective views, radians: 11 degrees, a long lens that keeps stems
+/// straight.
 const HALF_FOV: f64 = 0.192;
 
 /// Maps plant coordinates (metres) to pixels (x right, y down, origin at the upper left corner of the picture).
@@ -31,9 +32,10 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of `spec.view` that shows all of `points` (metres; what is not finite is passed over) with the
-    /// margin of `spec`. A turntable's frame holds what the points sweep as they turn around the upright axis
-    /// through the middle of their bounds; a pinhole stays where it is. No points: the unit cube around the origin.
+    /// Makes the camera of `spec.view` that shows all of `points` (metres; points that are not finite are ignored) with
+    /// the margin of `spec`. A turntable's frame holds the volume that the points sweep as they turn around the
+    /// vertical axis through the centre of their bounds; a pinhole stays where it is. No points: the unit cube around
+    /// the origin.
     pub fn framing(points: &[DVec3], spec: &PictureSpec) -> Self {
         let spec = spec.clamped();
         let (azimuth, elevation, perspective) = match spec.view {
@@ -88,7 +90,8 @@ impl Camera {
         }
     }
 
-    /// Without perspective, from the direction `back`, of all within `radius` of `centre`, in a square of so many pixels.
+    /// Makes an orthographic camera that looks from the direction `back` at all within `radius` of `centre`, in a
+    /// square of `pixels` pixels a side.
     pub(crate) fn of_sphere(back: DVec3, centre: DVec3, radius: f64, pixels: u32) -> Self {
         let back = back.normalize_or(DVec3::Z);
         let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
@@ -104,17 +107,19 @@ impl Camera {
         }
     }
 
-    /// A direction, or a way from the target, as it is seen: to the right, up, towards the viewer.
+    /// Expresses a direction, or an offset from the target, in the axes of the camera: to the right, up, towards the
+    /// viewer.
     pub(crate) fn seen(&self, way: DVec3) -> DVec3 {
         DVec3::new(way.dot(self.right), way.dot(self.up), way.dot(self.back))
     }
 
-    /// To the right, up and towards the viewer.
+    /// Returns the axes of the camera: to the right, up and towards the viewer.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
         [self.right, self.up, self.back]
     }
 
-    /// The same lens and place after the model has turned by `angle` around the axis of [`swept`].
+    /// Returns the camera with the same lens and place after the model has turned by `angle` around the axis of
+    /// [`swept`].
     pub(crate) fn turned(mut self, angle: f64, points: &[DVec3]) -> Self {
         let (s, c) = ops::sin_cos(angle);
         let turn = |v: DVec3| DVec3::new(v.x * c + v.z * s, v.y, v.z * c - v.x * s);
@@ -155,8 +160,8 @@ impl Camera {
         let mid = (lo + hi) * 0.5;
         self.target = self.right * mid.x + self.up * mid.y + self.back * mid.z;
         let radius = ((hi - lo) * 0.5).length().max(1e-150);
-        // The distance is exact for a given target; the target moves to the middle of what is seen. The
-        // shift contracts by about depth / distance, so that a few rounds are enough.
+        // The distance is exact for a given target; the target moves to the centre of the visible extent. The shift
+        // contracts by about depth / distance, so that a few rounds are enough.
         for _ in 0..6 {
             let mut distance = 1.5 * radius;
             for &p in points.iter().filter(|p| p.is_finite()) {
@@ -180,8 +185,8 @@ impl Camera {
         self.distance = Some(far);
     }
 
-    /// Pixel coordinates of a point, with the centre of the upper left pixel at (0.5, 0.5), and in `z` a key that
-    /// grows towards the viewer and is linear over the picture. NaN for points behind a perspective camera.
+    /// Projects a point to pixel coordinates, with the centre of the upper left pixel at (0.5, 0.5), and in `z` a key
+    /// that grows towards the viewer and is linear over the picture. NaN for points behind a perspective camera.
     pub fn project(&self, p: DVec3) -> DVec3 {
         let q = self.local(p);
         match self.distance {
@@ -197,12 +202,12 @@ impl Camera {
         }
     }
 
-    /// Perspective, not orthographic.
+    /// Whether the camera is perspective, not orthographic.
     pub fn is_perspective(&self) -> bool {
         self.distance.is_some()
     }
 
-    /// Eye-side start and unit direction of the ray through a pixel position.
+    /// Returns the eye-side start and unit direction of the ray through a pixel position.
     pub(crate) fn ray(&self, pixel: DVec2) -> (DVec3, DVec3) {
         let d = (pixel - self.centre) / self.scale;
         match self.distance {
@@ -214,7 +219,7 @@ impl Camera {
         }
     }
 
-    /// Unit vector from `p` towards the viewer.
+    /// Returns the unit vector from `p` towards the viewer.
     pub(crate) fn toward_viewer(&self, p: DVec3) -> DVec3 {
         match self.distance {
             None => self.back,
@@ -222,13 +227,13 @@ impl Camera {
         }
     }
 
-    /// The level direction to the right of the viewer and the level direction towards the viewer.
+    /// Returns the horizontal direction to the right of the viewer and the horizontal direction towards the viewer.
     pub(crate) fn level_frame(&self) -> (DVec3, DVec3) {
         (self.right, self.right.cross(DVec3::Y))
     }
 }
 
-// A point of the upright axis through the middle of the bounds.
+// Returns a point of the vertical axis through the centre of the bounds.
 fn axis_of(points: &[DVec3]) -> DVec3 {
     let (lo, hi) = points
         .iter()
@@ -238,7 +243,7 @@ fn axis_of(points: &[DVec3]) -> DVec3 {
     if mid.is_finite() { DVec3::new(mid.x, 0.0, mid.z) } else { DVec3::ZERO }
 }
 
-// Rings of the widest reach at 32 heights: what the points sweep as they turn.
+// Returns rings of the widest reach at 32 heights: the volume that the points sweep as they turn.
 fn swept(points: &[DVec3]) -> Vec<DVec3> {
     const BANDS: usize = 32;
     let axis = axis_of(points);
@@ -262,7 +267,7 @@ fn swept(points: &[DVec3]) -> Vec<DVec3> {
         .collect()
 }
 
-// Level and upright views must be level to the last bit: the front view is the drawing.
+// Horizontal and vertical views must be so to the last bit: the front view is the drawing.
 fn exact_sin_cos(angle: f64) -> (f64, f64) {
     let (s, c) = ops::sin_cos(angle);
     if c.abs() < 1e-15 { (s.signum(), 0.0) } else { (s, c) }

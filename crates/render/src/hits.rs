@@ -1,4 +1,4 @@
-//! What each beam of a scanner, or each pixel of a camera, meets first.
+//! First surface that each beam of a scanner, or each pixel of a camera, meets.
 
 use base::{Cancelled, Run, map_until_cancelled};
 use glam::{DVec2, DVec3};
@@ -9,30 +9,31 @@ use crate::raster::{Bins, NONE, TILE, Visible};
 use crate::scene::Scene;
 use crate::spec::PictureSpec;
 
-/// What one beam meets.
+/// Surface point that one beam meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Of the picture, from the upper left along its rows.
+    /// Index of the pixel, from the upper left along the rows of the picture.
     pub pixel: u32,
     /// Row of [`Model::parts`].
     pub part: u32,
     /// Row of the part's triangles.
     pub triangle: u32,
-    /// Where, metres: on the triangle.
+    /// Position on the triangle, metres.
     pub at: DVec3,
-    /// Of the triangle, a unit vector towards the scanner.
+    /// Normal of the triangle, a unit vector towards the scanner.
     pub normal: DVec3,
     /// Unit vector from the scanner to the point.
     pub beam: DVec3,
-    /// From the scanner, metres; of a view without perspective from its plane through the origin of the view.
+    /// Distance from the scanner, metres; in an orthographic view, from the plane through the origin of the view.
     pub distance_m: f64,
 }
 
-/// What the beams through the middles of all pixels meet, from each of several views; what meets nothing is left out.
+/// Returns the points that the beams through the centres of all pixels meet, from each of several views; beams without
+/// a hit are left out.
 ///
-/// Guaranteed: the same bits for any executor; in the order of views and pixels; holes of textures let beams through. As
-/// [`crate::render`], what is not sound is left out, and sizes are clamped. A turntable is taken for its first view.
-/// Cost: linear in triangles and pixels, about 40 ns a triangle for each view.
+/// Guaranteed: the same bits for any executor; in the order of views and pixels; holes of textures let beams through.
+/// As in [`crate::render`], unsound input is left out, and sizes are clamped. Of a turntable only the first view is
+/// used. Cost: linear in triangles and pixels, about 40 ns a triangle for each view.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.

@@ -1,4 +1,4 @@
-//! A plant as a few crossing pictures, cut out of views from all sides.
+//! Impostors: a plant as a few crossing pictures, cut out of views from all sides.
 
 use std::sync::Arc;
 
@@ -18,18 +18,21 @@ use crate::texture::srgb;
 const FRAMES: u32 = 8;
 /// Samples along a pixel's edge.
 const SAMPLES: u32 = 3;
-/// How much larger than the plant's sphere a view is: its pixels do not meet those of the next.
+/// Ratio of the size of a view to that of the plant's bounding sphere: its pixels do not touch those of the next.
 const ROOM: f64 = 1.02;
-/// Of the height, what is the foot.
+/// Share of the height that counts as the foot.
 const FOOT: f64 = 0.04;
-/// Of the light of the sky, what reaches the inside of a crown however dense it is: light goes from leaf to leaf.
+/// Least share of the sky's light that reaches the inside of a crown, however dense it is: light passes from leaf to
+/// leaf.
 const INSIDE: f64 = 0.3;
 
-/// The model as an octahedral impostor: an atlas of `size` pixels a side (128 to 4096) with 8 by 8 views of its colours, in
-/// the shade of its own leaves, of normals and depth ([`Impostor`]), on two upright pictures that cross in its middle. A shader
-/// that knows such atlases shows the two or three views nearest to the camera's; other programs show the crossing pictures.
+/// Makes an octahedral impostor of the model: an atlas of `size` pixels a side (128 to 4096) with 8 by 8 views of its
+/// colours, in the shade of its own leaves, of normals and depth ([`Impostor`]), on two upright pictures that cross at
+/// its centre. A shader for such atlases shows the two or three views nearest to the camera's; other programs show the
+/// crossing pictures.
 ///
-/// Guaranteed: the same bits for any executor. Each view covers as many pixels as the model does. Of nothing nothing is made.
+/// Guaranteed: the same bits for any executor. Each view covers as many pixels as the model does. `None` for an empty
+/// model.
 /// Cost: as 64 pictures without light, about 50 ns a triangle each.
 ///
 /// # Errors
@@ -71,8 +74,8 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
     };
     let mut mesh = TriMesh::default();
     let last = FRAMES - 1;
-    // From the front and from the right: views of the horizon are those along the edges of the atlas. More of them would cover
-    // more than the plant does.
+    // From the front and from the right: the views of the horizon are those along the edges of the atlas. More of them
+    // would cover more than the plant does.
     for (i, j) in [(last, 0), (last, last)] {
         let k = j * FRAMES + i;
         let Some([low, high]) = views[k as usize].extent else { continue };
@@ -99,7 +102,7 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
     }))
 }
 
-/// Above the foot of what stands there, halfway up: pictures that cross in its stem do not show it side by side.
+/// Returns the point halfway up, above the foot of the plant: pictures that cross in its stem do not show it twice.
 fn middle(scene: &Scene) -> DVec3 {
     let (low, high) = (scene.bounds.min.y, scene.bounds.max.y);
     let low = if low < 0.0 && high > 0.0 { 0.0 } else { low };
@@ -110,7 +113,8 @@ fn middle(scene: &Scene) -> DVec3 {
         let [a, b, c] = corners;
         let lowest = corners.into_iter().fold(a, |least, p| if p.y < least.y { p } else { least });
         if lowest.y <= top {
-            // Square metres, squared: of shoots that hang to the ground around a stem many triangles are there, but small ones.
+            // Square metres, squared: shoots that hang to the ground around a stem have many triangles there, but small
+            // ones.
             let area = (b - a).cross(c - a).length_squared();
             sum += lowest * area;
             weight += area;
@@ -121,21 +125,21 @@ fn middle(scene: &Scene) -> DVec3 {
     DVec3::new(over.x, middle.y, over.z)
 }
 
-/// Where a view is seen from: see [`Impostor`].
+/// Returns the direction from which a view is seen: see [`Impostor`].
 fn direction(i: u32, j: u32) -> DVec3 {
     let at = |k: u32| 2.0 * f64::from(k) / f64::from(FRAMES - 1) - 1.0;
     let (x, z) = (0.5 * (at(i) + at(j)), 0.5 * (at(i) - at(j)));
     DVec3::new(x, (1.0 - x.abs() - z.abs()).max(0.0), z).normalize_or(DVec3::Y)
 }
 
-/// One view: pixels as bytes, and the box of what is seen in it.
+/// One view: pixels as bytes, and the bounding box of its visible part.
 struct View {
     color: Vec<u8>,
     normal: Vec<u8>,
     extent: Option<[DVec2; 2]>,
 }
 
-/// What a pixel shows, summed over its samples.
+/// Values of a pixel, summed over its samples.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     color: DVec3,
@@ -199,7 +203,7 @@ fn bytes(sums: &[Sum], size: usize, radius: f64) -> View {
         alpha: a.alpha + b.alpha,
         ..a
     });
-    // Where nothing is, the mean of all: coarser copies of the atlas have no dark seam.
+    // Empty pixels take the mean of all: coarser copies of the atlas have no dark seam.
     let mean = if whole.alpha > 0.0 { whole.color / whole.alpha } else { DVec3::splat(0.2) };
     let alphas = ranked(&sums.iter().map(|s| s.alpha).collect::<Vec<_>>(), size);
     let cut = cut(&alphas, whole.alpha);
@@ -225,15 +229,15 @@ fn bytes(sums: &[Sum], size: usize, radius: f64) -> View {
     view
 }
 
-/// Alphas of which none are alike: samples are few, and of as many the pixel with more around it is more; of as many there,
-/// too, scattered ones are.
+/// Makes alphas distinct: samples are few, so of equal pixels the one with more coverage around it ranks higher, and if
+/// that is equal too, the order is scattered.
 fn ranked(alphas: &[f64], size: usize) -> Vec<f64> {
     let row = |y: usize| y.saturating_sub(1)..(y + 2).min(size);
     let around = |k: usize| {
         let (x, y) = (k % size, k / size);
         row(y).flat_map(|j| row(x).map(move |i| alphas[j * size + i])).sum::<f64>()
     };
-    // All nine of them are less than a sample, and the last of these is less than a sample among them.
+    // All nine of them together are less than a sample, and the scattered term is less than a sample among them.
     let sample = 1.0 / f64::from(SAMPLES * SAMPLES);
     let scattered = |k: usize| (0.618_033_988_75 * k as f64).fract();
     let rank = |(k, a): (usize, &f64)| {
@@ -242,7 +246,7 @@ fn ranked(alphas: &[f64], size: usize) -> Vec<f64> {
     alphas.iter().enumerate().map(rank).collect()
 }
 
-/// The alpha at which as many pixels are cut out as are covered on the whole.
+/// Returns the alpha threshold at which as many pixels are cut out as are covered in total.
 fn cut(alphas: &[f64], covered: f64) -> f64 {
     let mut seen: Vec<f64> = alphas.iter().copied().filter(|a| *a > 0.0).collect();
     base::sort_by(&mut seen, |a, b| b.total_cmp(a));
@@ -255,8 +259,8 @@ fn cut(alphas: &[f64], covered: f64) -> f64 {
     seen.get(kept.saturating_sub(1)).copied().unwrap_or(0.5).clamp(0.02, 0.98)
 }
 
-/// An alpha that is a little more than a half at the cut, and rises from there as steeply as before it: what is thin stays
-/// where programs cut between pixels.
+/// Returns an alpha that is slightly above one half at the threshold, and continues from there as steeply as before it:
+/// thin parts stay in place in programs that cut between pixels.
 fn sharp(alpha: f64, cut: f64) -> f64 {
     if alpha < cut {
         return 0.49 * alpha / cut;
@@ -269,7 +273,7 @@ fn sharp(alpha: f64, cut: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A red ball and a green one to its right (+X), as small boxes.
+    /// Returns a red box and a green one to its right (+X).
     fn two() -> Model {
         let mut model = Model { name: "two".into(), ..Model::default() };
         for (row, (x, color)) in [(0.0_f32, [1.0, 0.0, 0.0]), (2.0, [0.0, 1.0, 0.0])].into_iter().enumerate()
@@ -315,22 +319,22 @@ mod tests {
             }
             n
         };
-        // From +X the green box hides the red one; from +Z both are seen, and from -X the red alone.
+        // From +X the green box hides the red one; from +Z both are visible, and from -X only the red one.
         assert!((direction(7, 7) - DVec3::X).length() < 1e-9 && (direction(7, 0) - DVec3::Z).length() < 1e-9);
         assert!(count(7, 7, 1) > 100 && count(7, 7, 0) == 0);
         assert!(count(0, 0, 0) > 100 && count(0, 0, 1) == 0, "from {}", direction(0, 0));
         assert!(count(7, 0, 0) > 100 && count(7, 0, 1) > 100);
-        // From the front the face of a box looks at the viewer, and lies before the middle.
+        // From the front the face of a box faces the viewer, and lies in front of the centre.
         let middle = 4 * (32_usize * 512 + 7 * 64 + 32 - 20);
         let n = &normals.pixels[middle..middle + 4];
         assert!(n[2] > 230 && n[3] > 140, "{n:?}");
     }
 
-    /// As the shoots of a willow: nothing fills a pixel.
+    /// Like the shoots of a willow: nothing fills a pixel.
     #[test]
     fn thin_shoots_cover_no_more_than_they_do() {
         for (size, width) in [(64_usize, 0.3), (64, 0.7), (128, 0.5)] {
-            // Thirty shoots that lean as they hang; samples of a third of a pixel, as views have them.
+            // Thirty hanging shoots that lean; samples of a third of a pixel, as in views.
             let start = |n: u32| (17.37 * f64::from(n)) % size as f64;
             let lean = |n: u32| 0.3 * base::ops::sin(2.1 * f64::from(n));
             let hit = |x: f64, y: f64| (0..30).any(|n| (x - start(n) - lean(n) * y).abs() < 0.5 * width);
@@ -348,7 +352,7 @@ mod tests {
         }
     }
 
-    /// As a willow's, on one side of its stem only.
+    /// Like those of a willow, on one side of its stem only.
     #[test]
     fn what_hangs_to_the_ground_does_not_move_the_middle() {
         let mut model = two();

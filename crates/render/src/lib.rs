@@ -2,19 +2,19 @@
 //!
 //! `Model -> Scene -> light maps -> tiles of fragments -> Picture`
 //!
-//! A rasteriser with many samples a pixel, lit by a soft sun and by the whole sky: every light has its own depth
-//! map, so that shadows are soft and hollows are dark without noise. Blades let light through.
+//! A rasteriser with many samples a pixel, lit by a soft sun and by the whole sky: every light has its own depth map,
+//! so that shadows are soft and hollows are dark without noise. Blades transmit light.
 //!
 //! | module | owns |
 //! |---|---|
-//! | `spec` | [`PictureSpec`], [`View`], [`Background`]: what is asked |
+//! | `spec` | [`PictureSpec`], [`View`], [`Background`]: settings of a picture |
 //! | `picture` | [`Picture`], [`contact_sheet`] |
 //! | `camera` | [`Camera`]: framing and projection |
 //! | `scene` | the model as one list of sound triangles |
 //! | `texture` | sRGB tables, textures with halved copies |
 //! | `light` | directions, depth maps, light that reaches vertices and ground |
-//! | `raster` | which triangle each sample of a tile sees |
-//! | `hits` | [`Hit`]: what beams and pixels meet, with the triangle |
+//! | `raster` | the visible triangle of each sample of a tile |
+//! | `hits` | [`Hit`]: surface points of beams and pixels, with the triangle |
 //! | `impostor` | [`impostor()`]: views from all sides in one picture |
 //! | `shade` | colour of a fragment and of the background |
 
@@ -41,7 +41,7 @@ use mesh::Model;
 use light::Sky;
 use scene::Scene;
 
-/// A picture of `model`.
+/// Renders a picture of `model`.
 ///
 /// Guaranteed: the same bits for any executor; vertices that are not finite, triangles that name missing vertices
 /// and parts that name missing materials are left out; an empty model gives the background alone. Sizes are
@@ -71,7 +71,7 @@ pub fn render(model: &Model, spec: &PictureSpec, run: &Run<'_>) -> Result<Pictur
     let frame = PictureSpec { width: spec.width / columns, height: spec.height / rows, ..spec.clone() };
     let mut pictures = turntable(model, &frame, frames, run)?;
     if frames < columns * rows {
-        // Free places show the background.
+        // Empty cells show the background.
         let bare = render(&Model::default(), &PictureSpec { view: View::ThreeQuarter, ..frame }, run)?;
         pictures.resize((columns * rows) as usize, bare);
     }
@@ -79,8 +79,8 @@ pub fn render(model: &Model, spec: &PictureSpec, run: &Run<'_>) -> Result<Pictur
     Ok(sheet.resized_canvas(spec.width, spec.height))
 }
 
-/// `frames` pictures of `model` turning once around its upright axis, each of the size in `spec`; `spec.view` is
-/// not used. All frames have one scale, and the light stands still beside the viewer.
+/// Renders `frames` pictures of `model` turning once around its vertical axis, each of the size in `spec`; `spec.view`
+/// is ignored. All frames have one scale, and the light stands still next to the viewer.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.
@@ -104,7 +104,7 @@ pub fn turntable(
         .collect()
 }
 
-/// A picture of `model` by a camera that is there already: pictures of a film, one at a time. `spec.view` is not used.
+/// Renders a picture of `model` with a given camera, for films, one picture at a time. `spec.view` is ignored.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.

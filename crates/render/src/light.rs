@@ -1,4 +1,4 @@
-//! Light: directions, depth maps, and what of the sky reaches vertices and the ground.
+//! Light: directions, depth maps, and the share of the sky that reaches vertices and the ground.
 //!
 //! The sky is a ball of distant lamps and the sun a small disc of them. Each lamp sees the scene through its own
 //! depth map, so that occlusion is soft, has no noise, and does not depend on the view.
@@ -18,21 +18,24 @@ const SUN_LAMPS: usize = 14;
 const SUN_RADIUS: f64 = 0.035;
 /// Cells along an edge of the ground's light grid.
 const GROUND_CELLS: usize = 96;
-/// Light of the sun on a surface that faces it, as reflected by pure white: level ground in sun and sky is nearly white.
+/// Light of the sun on a surface that faces it, as reflected by pure white: horizontal ground in sun and sky is nearly
+/// white.
 pub(crate) const SUN: DVec3 = DVec3::new(0.83, 0.77, 0.68);
-/// Of the sky: a white plane that sees all of it and no sun is as bright as what is shown of it (`shade::backdrop`), by a test.
+/// Light of the sky at the zenith: a white plane that sees the whole sky and no sun is as bright as the backdrop
+/// (`shade::backdrop`), by a test.
 const ZENITH: DVec3 = DVec3::new(0.61, 0.70, 0.83);
+/// Light of the sky at the horizon.
 const HORIZON: DVec3 = DVec3::new(0.71, 0.71, 0.70);
-/// Of the ground, which is pale and in the sun.
+/// Light of the ground, which is pale and in the sun.
 const BOUNCE: DVec3 = DVec3::new(0.42, 0.41, 0.37);
 
-/// Light from a direction of the sky (or of the pale ground below the horizon).
+/// Returns the light from a direction of the sky (or of the pale ground below the horizon).
 fn radiance(d: DVec3, skylight: f64) -> DVec3 {
     let up = HORIZON.lerp(ZENITH, ops::smoothstep(0.0, 0.8, d.y));
     up.lerp(BOUNCE, ops::smoothstep(0.05, -0.05, d.y).clamp(0.0, 1.0)) * skylight
 }
 
-/// What one distant lamp sees.
+/// Depths from one distant lamp.
 pub(crate) struct DepthMap {
     pub(crate) toward: DVec3,
     u: DVec3,
@@ -151,8 +154,9 @@ impl DepthMap {
         }
     }
 
-    /// Share of the lamp that reaches `p`, 0 to 1, from the four texels around. `slope` is the tangent of the
-    /// angle between the surface and the lamp's rays' normal plane: steep surfaces span more depth in a texel.
+    /// Returns the share of the lamp that reaches `p`, 0 to 1, from the four texels around. `slope` is the tangent of
+    /// the angle between the surface and the plane normal to the lamp's rays: steep surfaces span more depth in a
+    /// texel.
     pub(crate) fn lit(&self, p: DVec3, slope: f64) -> f64 {
         let q = self.local(p);
         let s = (q.truncate() - self.low) / self.texel - 0.5;
@@ -171,41 +175,41 @@ impl DepthMap {
         ops::lerp(near, far, ty)
     }
 
-    /// [`lit`](Self::lit) for a surface with unit normal `n`, of either side.
+    /// As [`lit`](Self::lit), for a surface with unit normal `n`, of either side.
     fn lit_surface(&self, p: DVec3, n: DVec3) -> f64 {
         self.lit(p, slope(n.dot(self.toward)))
     }
 }
 
-// The first whole number from x on; x is not negative.
+// Returns the first whole number from x on; x is not negative.
 fn up(x: f32) -> usize {
     let down = x.max(0.0) as usize;
     if (down as f32) < x { down + 1 } else { down }
 }
 
-// Tangent of the angle whose cosine is given, of either sign.
+// Returns the tangent of the angle whose cosine is given, of either sign.
 fn slope(cos: f64) -> f64 {
     let c = cos.abs().max(0.05);
     (1.0 - c * c).max(0.0).sqrt() / c
 }
 
-/// Share of the sun's disc that reaches a surface at `p` with unit normal `n`.
+/// Returns the share of the sun's disc that reaches a surface at `p` with unit normal `n`.
 pub(crate) fn sunlit(sun: &[DepthMap], p: DVec3, n: DVec3) -> f64 {
     // The disc is small: one slope serves all its lamps.
     let slope = sun.first().map_or(0.0, |m| slope(n.dot(m.toward)));
     sun.iter().map(|m| m.lit(p, slope)).sum::<f64>() / sun.len().max(1) as f64
 }
 
-/// The sky's light on both sides of every vertex and on the ground; does not depend on the view.
+/// Light of the sky on both sides of every vertex and on the ground; does not depend on the view.
 pub(crate) struct Sky {
     /// Light on the side of the normal, and on the other side, as reflected by pure white.
     pub(crate) vertices: Vec<[DVec3; 2]>,
     ground_low: DVec2,
     ground_cell: DVec2,
     ground: Vec<DVec3>,
-    /// Light of the free sky on level ground.
+    /// Light of the free sky on horizontal ground.
     pub(crate) open: DVec3,
-    /// Of the usual brightness.
+    /// Factor on the usual brightness.
     skylight: f64,
     turn: f64,
     map_size: usize,
@@ -290,13 +294,13 @@ impl Sky {
         Ok(())
     }
 
-    /// The light of sky and ground on a surface of unit normal `n` with nothing else around, as reflected by pure white. Of a sky
-    /// of one brightness above a ground of one that is exact.
+    /// Returns the light of sky and ground on an unobstructed surface of unit normal `n`, as reflected by pure white.
+    /// Exact for a uniform sky above uniform ground.
     pub(crate) fn free(&self, n: DVec3) -> DVec3 {
         (BOUNCE * self.skylight).lerp(self.open, 0.5 + 0.5 * n.y)
     }
 
-    /// The sky's light on the ground below `p`.
+    /// Returns the sky's light on the ground below `p`.
     pub(crate) fn on_ground(&self, p: DVec3) -> DVec3 {
         let s = (DVec2::new(p.x, p.z) - self.ground_low) / self.ground_cell;
         let top = (GROUND_CELLS - 1) as f64;
@@ -308,13 +312,13 @@ impl Sky {
         let at = y * GROUND_CELLS + x;
         let near = self.ground[at].lerp(self.ground[at + 1], tx);
         let far = self.ground[at + GROUND_CELLS].lerp(self.ground[at + GROUND_CELLS + 1], tx);
-        // The grid ends softly.
+        // The light fades to that of the open ground towards the edge of the grid.
         let edge = (s.min(DVec2::splat(top) - s)).min_element() / top;
         self.open.lerp(near.lerp(far, ty), ops::smoothstep(0.0, 0.15, edge))
     }
 
-    /// The sun's lamps for a viewer whose level directions to the right and towards the eye are given: from the
-    /// upper left, a little in front of the model; or those of the sun that was `placed`.
+    /// Returns the sun's lamps for a viewer whose horizontal directions to the right and towards the eye are given:
+    /// from the upper left, a little in front of the model; or those of the sun that was `placed`.
     pub(crate) fn sun(
         &self,
         scene: &Scene,

@@ -19,12 +19,12 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of one colour.
+    /// Makes a picture of one colour.
     pub fn filled(width: u32, height: u32, rgba: [u8; 4]) -> Self {
         Self { width, height, pixels: rgba.repeat(width as usize * height as usize) }
     }
 
-    /// The RGBA bytes of a pixel; `None` outside.
+    /// Returns the RGBA bytes of a pixel; `None` outside.
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
         if x >= self.width || y >= self.height {
             return None;
@@ -33,7 +33,7 @@ impl Picture {
         self.pixels.get(at..at + 4).and_then(|p| p.try_into().ok())
     }
 
-    /// Copies `other` with its upper left corner at (`x`, `y`); what does not fit is left out.
+    /// Copies `other` with its upper left corner at (`x`, `y`); parts outside are left out.
     pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
@@ -46,7 +46,7 @@ impl Picture {
         }
     }
 
-    // Grows right and down by repeating the edge, so that a sheet has the size that was asked for.
+    // Extends the picture right and down by repeating the edge, so that a sheet has the requested size.
     pub(crate) fn resized_canvas(self, width: u32, height: u32) -> Self {
         if (self.width, self.height) == (width, height) || self.width == 0 || self.height == 0 {
             return self;
@@ -65,8 +65,8 @@ impl Picture {
     }
 }
 
-/// Pictures side by side in rows of `columns` (0 is taken as 1), in reading order, each in a cell of the largest
-/// width and height; free places are transparent. No pictures give a picture of no pixels.
+/// Arranges pictures in rows of `columns` (0 counts as 1), in reading order, each in a cell of the largest width and
+/// height; empty cells are transparent. No pictures give a picture of no pixels.
 ///
 /// ```
 /// let cell = render::Picture::filled(2, 3, [9; 4]);

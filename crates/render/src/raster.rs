@@ -1,7 +1,7 @@
-//! Which triangle each sample of a tile sees.
+//! Finds the visible triangle of each sample of a tile.
 //!
-//! Corners are rounded to 1/256 pixel, so that edge functions are exact in f64 and neighbours leave no gap. The
-//! samples of a pixel form a sheared grid: near-upright and near-level edges cross as many steps as slanted ones.
+//! Corners are rounded to 1/256 pixel, so that edge functions are exact in f64 and neighbours leave no gap. The samples
+//! of a pixel form a sheared grid: nearly vertical and nearly horizontal edges cross as many steps as slanted ones.
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "pixel arithmetic, clamped")]
 
 use glam::{DVec2, DVec3};
@@ -36,7 +36,7 @@ impl Flat {
         (area != 0.0 && area.is_finite()).then_some(Self { corners, area })
     }
 
-    /// Barycentric coordinates on the picture.
+    /// Returns the barycentric coordinates on the picture.
     pub(crate) fn weights(&self, p: DVec2) -> DVec3 {
         let [a, b, c] = self.corners.map(DVec3::truncate);
         let wa = (b - p).perp_dot(c - p) / self.area;
@@ -44,7 +44,7 @@ impl Flat {
         DVec3::new(wa, wb, 1.0 - wa - wb)
     }
 
-    /// Barycentric coordinates on the triangle itself: the nearer corner weighs more in perspective.
+    /// Returns the barycentric coordinates on the triangle itself: the nearer corner weighs more in perspective.
     pub(crate) fn surface_weights(&self, p: DVec2, perspective: bool) -> DVec3 {
         let w = self.weights(p).clamp(DVec3::ZERO, DVec3::ONE);
         let w = if perspective { w * DVec3::from(self.corners.map(|c| c.z)) } else { w };
@@ -52,7 +52,7 @@ impl Flat {
         if sum > 0.0 { w / sum } else { DVec3::splat(1.0 / 3.0) }
     }
 
-    /// Pixels that the triangle covers.
+    /// Returns the number of pixels that the triangle covers.
     pub(crate) fn pixel_area(&self) -> f64 {
         self.area.abs() * 0.5
     }
@@ -81,7 +81,7 @@ impl Bins {
             if high.x < 0.0 || high.y < 0.0 {
                 continue;
             }
-            // Saturating casts: what lies outside the picture lands in its border tiles or in none.
+            // Saturating casts: positions outside the picture land in its border tiles or in none.
             for row in low.y as usize..=(high.y as usize).min(rows - 1) {
                 for column in low.x as usize..=(high.x as usize).min(columns - 1) {
                     tiles[row * columns + column].push(i);
@@ -96,7 +96,7 @@ impl Bins {
     }
 }
 
-/// The samples' places within a pixel, 0 to 1.
+/// Returns the positions of the samples within a pixel, 0 to 1.
 pub(crate) fn pattern(per_edge: u32) -> Vec<DVec2> {
     let n = f64::from(per_edge);
     let round = |x: f64| (x * SUBPIXEL).floor() / SUBPIXEL;
@@ -108,7 +108,7 @@ pub(crate) fn pattern(per_edge: u32) -> Vec<DVec2> {
         .collect()
 }
 
-/// For every sample of a tile the triangle that it sees.
+/// The visible triangle of every sample of a tile.
 pub(crate) struct Visible {
     pub(crate) ids: Vec<u32>,
     keys: Vec<f32>,
@@ -116,13 +116,13 @@ pub(crate) struct Visible {
 }
 
 impl Visible {
-    /// Ids of the samples of a pixel of the tile.
+    /// Returns the ids of the samples of a pixel of the tile.
     pub(crate) fn pixel(&self, x: usize, y: usize) -> &[u32] {
         let at = (y * TILE + x) * self.samples;
         &self.ids[at..at + self.samples]
     }
 
-    /// Draws the tile's triangles whose upper left pixel is `origin`.
+    /// Draws the triangles of the tile whose upper left pixel is `origin`.
     pub(crate) fn draw(
         scene: &Scene,
         bins: &Bins,
@@ -154,7 +154,7 @@ impl Visible {
         let triangle = &scene.triangles[id as usize];
         let surface = &scene.surfaces[triangle.surface as usize];
         let mask = surface.texture.as_ref().filter(|_| surface.mask);
-        // From the front the ground is a line, and what was drawn below it is shown.
+        // In a front view the ground is a line, and parts below it are shown.
         let sunk = perspective && scene.corners(triangle).iter().any(|v| v.at.y < scene.ground);
         let [a, b, c] = flat.corners.map(|p| DVec3::new(p.x - origin.x, p.y - origin.y, p.z));
         let sign = flat.area.signum();

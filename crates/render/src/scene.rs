@@ -18,14 +18,14 @@ pub(crate) struct Surface {
     pub(crate) color: DVec3,
     pub(crate) roughness: f64,
     pub(crate) translucency: f64,
-    /// Colour of light that has passed through, relative to `color`.
+    /// Colour of transmitted light, relative to `color`.
     pub(crate) through: DVec3,
     pub(crate) texture: Option<Arc<Pyramid>>,
-    /// Normals in the space of the tangent, each -1 to 1 as 0 to 1.
+    /// Normals in tangent space, each component -1 to 1 stored as 0 to 1.
     pub(crate) normals: Option<Arc<Pyramid>>,
-    /// Occlusion, and what the roughness is multiplied with.
+    /// Occlusion, and the factor on the roughness.
     pub(crate) orm: Option<Arc<Pyramid>>,
-    /// What the translucency is multiplied with, in alpha.
+    /// Factor on the translucency, in alpha.
     pub(crate) thin: Option<Arc<Pyramid>>,
     pub(crate) mask: bool,
 }
@@ -35,8 +35,8 @@ pub(crate) struct Triangle {
     pub(crate) surface: u32,
 }
 
-/// So much of a plant, by its height, may be in the ground before all of it is shown: tips of leaves and roots that sink into the
-/// ground, no taproot. As on the Studio's stage.
+/// Share of a plant's height that may be in the ground and hidden by it: tips of leaves and roots that sink into the
+/// ground, but no taproot. As on the Studio's stage.
 const IN_THE_GROUND: f64 = 0.06;
 
 pub(crate) struct Scene {
@@ -44,9 +44,9 @@ pub(crate) struct Scene {
     pub(crate) triangles: Vec<Triangle>,
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) bounds: Bounds,
-    /// Height of the ground. It hides what is below it from all who look from above.
+    /// Height of the ground. It hides everything below it from viewers above.
     pub(crate) ground: f64,
-    /// The part and the row in it of each triangle, where somebody asks for them.
+    /// Part and row in it of each triangle, if requested.
     pub(crate) places: Option<Vec<[u32; 2]>>,
 }
 
@@ -56,15 +56,15 @@ fn vec3(v: [f32; 3]) -> DVec3 {
 
 impl Scene {
     pub(crate) fn new(model: &Model) -> Self {
-        Self::of(model, None)
+        Self::from_model(model, None)
     }
 
-    /// With the part and the row of each triangle.
+    /// Makes the scene with the part and the row of each triangle.
     pub(crate) fn placed(model: &Model) -> Self {
-        Self::of(model, Some(Vec::with_capacity(model.triangle_count())))
+        Self::from_model(model, Some(Vec::with_capacity(model.triangle_count())))
     }
 
-    fn of(model: &Model, places: Option<Vec<[u32; 2]>>) -> Self {
+    fn from_model(model: &Model, places: Option<Vec<[u32; 2]>>) -> Self {
         let mut scene = Self {
             vertices: Vec::with_capacity(model.vertex_count()),
             triangles: Vec::with_capacity(model.triangle_count()),
@@ -79,8 +79,7 @@ impl Scene {
             }
         }
         if !scene.bounds.is_empty() {
-            // Plants stand on y = 0 even when a leaf hangs a little lower; other things stand on their lowest
-            // point.
+            // Plants stand on y = 0 even if a leaf hangs a little lower; other models stand on their lowest point.
             let (low, height) = (scene.bounds.min.y, scene.bounds.size().y);
             scene.ground = if low.abs() <= IN_THE_GROUND * height { 0.0 } else { low };
         }
@@ -126,12 +125,12 @@ impl Scene {
         t.corners.map(|i| &self.vertices[i as usize])
     }
 
-    /// Half the diagonal of the bounds.
+    /// Returns half the diagonal of the bounds.
     pub(crate) fn radius(&self) -> f64 {
         self.bounds.size().length() * 0.5
     }
 
-    /// Positions that are part of a triangle.
+    /// Returns the positions that are part of a triangle.
     pub(crate) fn points(&self) -> Vec<DVec3> {
         let mut used = vec![false; self.vertices.len()];
         self.triangles.iter().flat_map(|t| t.corners).for_each(|i| used[i as usize] = true);
@@ -139,7 +138,7 @@ impl Scene {
     }
 }
 
-// The mesh's unit normals where they are sound, else those of the triangles around.
+// Returns the mesh's unit normals where they are sound, otherwise those of the surrounding triangles.
 fn normals(mesh: &TriMesh, sound: &dyn Fn(&[u32; 3]) -> bool) -> Vec<DVec3> {
     let given = mesh.normals.len() == mesh.positions.len();
     let mut out: Vec<Option<DVec3>> = if given {
@@ -188,7 +187,7 @@ fn surfaces(model: &Model) -> Vec<Surface> {
                 color: DVec3::from_array(m.base_color.map(|c| unit(c, 0.5))),
                 roughness: unit(m.roughness, 0.9).max(0.08),
                 translucency: unit(m.translucency, 0.0),
-                // Leaves let more yellow-green through than they reflect.
+                // Leaves transmit more yellow-green than they reflect.
                 through: if m.kind == MaterialKind::Leaf {
                     DVec3::new(1.35, 1.25, 0.7)
                 } else {

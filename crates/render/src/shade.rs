@@ -11,7 +11,7 @@ use crate::scene::{Scene, Triangle, Vertex};
 use crate::spec::{Background, PictureSpec};
 use crate::texture::{Pyramid, srgb};
 
-/// How much of the computed ground shadow is shown: full strength looks hard on a pale ground.
+/// Strength of the ground shadow, as a share of the computed one: full strength looks hard on a pale ground.
 const SHADOW_STRENGTH: f64 = 0.72;
 
 struct Frame<'a> {
@@ -24,7 +24,7 @@ struct Frame<'a> {
     pattern: Vec<DVec2>,
 }
 
-/// One picture of the scene; `spec` is clamped.
+/// Renders one picture of the scene; `spec` is clamped.
 pub(crate) fn frame(
     scene: &Scene,
     sky: &Sky,
@@ -77,7 +77,7 @@ impl Frame<'_> {
         out
     }
 
-    // Averages the fragments of a pixel: each triangle is shaded once, in the middle of its samples.
+    // Averages the fragments of a pixel: each triangle is shaded once, in the centre of its samples.
     fn pixel(&self, at: DVec2, ids: &[u32]) -> [u8; 4] {
         let (mut color, mut alpha) = (DVec3::ZERO, 0.0);
         let share = 1.0 / self.pattern.len() as f64;
@@ -110,7 +110,7 @@ impl Frame<'_> {
         if a == 0 { [0; 4] } else { [srgb(c.x), srgb(c.y), srgb(c.z), a] }
     }
 
-    /// Display-linear colour of a triangle at a pixel position.
+    /// Returns the display-linear colour of a triangle at a pixel position.
     fn fragment(&self, id: u32, at: DVec2) -> DVec3 {
         let triangle = &self.scene.triangles[id as usize];
         let Some(flat) = &self.bins.flats[id as usize] else { return DVec3::ZERO };
@@ -152,7 +152,7 @@ impl Frame<'_> {
         tone(light * self.spec.exposure)
     }
 
-    /// Display-linear colour and alpha of what is behind the model.
+    /// Returns the display-linear colour and alpha of the background.
     fn behind(&self, at: DVec2) -> (DVec3, f64) {
         let shade = if self.spec.ground_shadow { self.ground_shade(at) } else { DVec3::ONE };
         match self.spec.background {
@@ -170,7 +170,7 @@ impl Frame<'_> {
         }
     }
 
-    // Light on the ground at a pixel as a share of its light without the model.
+    // Returns the light on the ground at a pixel as a share of its light without the model.
     fn ground_shade(&self, at: DVec2) -> DVec3 {
         let (origin, direction) = self.camera.ray(at);
         if direction.y > -1e-6 || self.sun.is_empty() {
@@ -187,21 +187,21 @@ impl Frame<'_> {
     }
 }
 
-/// A place of a triangle as it is seen.
+/// A visible point of a triangle.
 pub(crate) struct Place {
-    /// Barycentric.
+    /// Barycentric coordinates.
     w: DVec3,
     pub(crate) p: DVec3,
     view: DVec3,
     face: DVec3,
-    /// Of the side that is seen, with its relief.
+    /// Normal of the visible side, with its relief.
     pub(crate) normal: DVec3,
-    /// The rear is seen.
+    /// The rear side is visible.
     turned: bool,
-    /// What is reflected, linear.
+    /// Reflectance, linear.
     pub(crate) color: DVec3,
     uv: DVec2,
-    /// Of the texture plane in a pixel.
+    /// Area of the texture plane that a pixel covers.
     uv_area: f64,
 }
 
@@ -215,7 +215,7 @@ impl Place {
         let view = camera.toward_viewer(p);
         let face = (b.at - a.at).cross(c.at - a.at).normalize_or(view);
         let mut normal = (a.normal * w.x + b.normal * w.y + c.normal * w.z).normalize_or(face);
-        // The side that is seen decides, whatever the file says about winding.
+        // The visible side decides, whatever winding the file has.
         let facing = if face.dot(view) < 0.0 { -face } else { face };
         let turned = normal.dot(facing) < 0.0;
         if turned {
@@ -230,7 +230,7 @@ impl Place {
         }
         place.color = place.color.min(DVec3::splat(0.95));
         if let Some(normals) = &surface.normals {
-            // What is a groove on one side is a ridge on the other.
+            // A groove on one side is a ridge on the other.
             let side = if turned { -1.0 } else { 1.0 };
             let seen = place.sample(normals).0 * 2.0 - DVec3::ONE;
             place.normal = relief(corners, normal, seen * DVec3::new(side, side, 1.0));
@@ -238,7 +238,7 @@ impl Place {
         place
     }
 
-    /// How much of the sky's light comes to it, 1 for all.
+    /// Returns the share of the sky's light that reaches the point, 1 for all.
     pub(crate) fn sky(&self, triangle: &Triangle, sky: &Sky) -> f64 {
         let [a, b, c] = triangle.corners.map(|i| sky.vertices[i as usize][usize::from(self.turned)]);
         (a.dot(DVec3::ONE) * self.w.x + b.dot(DVec3::ONE) * self.w.y + c.dot(DVec3::ONE) * self.w.z)
@@ -252,12 +252,12 @@ impl Place {
     }
 }
 
-/// A normal of the relief: `local` is that of its map, and `normal` that of the side that is seen.
+/// Returns a normal of the relief: `local` is that of its map, and `normal` that of the visible side.
 fn relief([a, b, c]: [&Vertex; 3], normal: DVec3, local: DVec3) -> DVec3 {
     let (ab, ac) = (b.at - a.at, c.at - a.at);
     let (s, t) = (b.uv - a.uv, c.uv - a.uv);
     let area = s.perp_dot(t);
-    // Where u runs and where the picture's up is on the triangle, in the plane of the normal.
+    // Directions of u and of the picture's up on the triangle, in the plane of the normal.
     let along_u = (ab * t.y - ac * s.y) * area.signum();
     let along_v = (ac * s.x - ab * t.x) * area.signum();
     let flat = |d: DVec3| (d - normal * normal.dot(d)).try_normalize();
@@ -265,7 +265,8 @@ fn relief([a, b, c]: [&Vertex; 3], normal: DVec3, local: DVec3) -> DVec3 {
     (right * local.x - down * local.y + normal * local.z.max(0.05)).normalize_or(normal)
 }
 
-/// What is shown of ground and sky, display-linear, from the foot of a picture, 0, to its top, 1: brightest where they meet.
+/// Returns the display-linear colour of ground and sky, from the foot of a picture, 0, to its top, 1: brightest where
+/// they meet.
 fn backdrop(t: f64) -> DVec3 {
     const LOW: DVec3 = DVec3::new(0.75, 0.74, 0.705);
     const MIDDLE: DVec3 = DVec3::new(0.78, 0.815, 0.84);
@@ -274,12 +275,13 @@ fn backdrop(t: f64) -> DVec3 {
     sky.lerp(HIGH, ops::smoothstep(0.35, 1.0, t))
 }
 
-/// The least share of the free light for which it is asked how much is passed on.
+/// Least share of the free light for which interreflection is computed.
 const DARKEST: f64 = 0.01;
 
-/// By how much more light comes to a place that is so lit, where nothing else around would give `free`, as the surfaces that hide
-/// the sky from it are of its own colour and pass light on: much in white blossom, hardly any among dark leaves. A fit to traced
-/// light (Jimenez, Wu, Pesce and Jarabo, Practical Realtime Strategies for Accurate Indirect Occlusion, 2016).
+/// Returns the factor by which interreflection brightens a point with this light, where an unobstructed one would have
+/// `free`, as the surfaces that hide the sky from it are of its own colour and pass light on: much in white blossom,
+/// hardly any among dark leaves. A fit to traced light (Jimenez, Wu, Pesce and Jarabo, Practical Realtime Strategies
+/// for Accurate Indirect Occlusion, 2016).
 fn passed_on(lit: DVec3, free: DVec3, color: DVec3) -> DVec3 {
     let of = |lit: f64, free: f64, color: f64| {
         let share = (lit / free.max(f64::MIN_POSITIVE)).clamp(DARKEST, 1.0);
@@ -316,14 +318,14 @@ mod tests {
     #[test]
     fn a_white_plane_in_the_shade_is_as_bright_as_the_sky_that_is_shown() {
         let sky = open_sky();
-        // By the cosine with the zenith. Sky is what is shown above a third of a picture's height.
+        // Weighted by the cosine with the zenith. Above a third of its height a picture shows sky.
         let shown: f64 = (0..1000)
             .map(|k| (f64::from(k) + 0.5) / 1000.0)
             .map(|up| 2.0 * up * luminance(backdrop(1.0 / 3.0 + 2.0 / 3.0 * up)) / 1000.0)
             .sum();
         let ratio = luminance(tone(sky.open)) / shown;
         assert!((0.93..1.07).contains(&ratio), "{ratio}");
-        // In the sun, at 50 degrees, it is brighter than all that is shown, and not burnt out.
+        // In the sun, at 50 degrees, it is brighter than the backdrop, and not overexposed.
         let sunlit = luminance(tone(SUN * 0.78 + sky.open));
         assert!(sunlit > luminance(backdrop(0.4)) && sunlit < 0.9, "{sunlit}");
     }

@@ -1,15 +1,16 @@
-//! What is asked of a picture.
+//! Settings of a picture.
 
 use base::Seed;
 use glam::{DVec2, DVec3};
 
 /// Azimuth and elevation of the three-quarter view, radians.
 pub(crate) const THREE_QUARTER: (f64, f64) = (0.55, 0.21);
-/// More frames than a sheet can show legibly.
+/// Most frames of a sheet that are still legible.
 pub(crate) const MAX_FRAMES: u32 = 360;
 const MAX_SIZE: u32 = 8192;
 
-/// Where the picture is taken from. The model always fills the picture but for a margin, except for [`View::Pinhole`].
+/// Viewpoint of a picture. The model always fills the picture except for a margin, unless the view is
+/// [`View::Pinhole`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum View {
@@ -24,27 +25,27 @@ pub enum View {
     Top,
     /// Perspective from any side.
     Orbit {
-        /// Around the upright axis, radians: 0 from the front (+Z), a quarter turn from the right (+X).
+        /// Azimuth around the vertical axis, radians: 0 from the front (+Z), a quarter turn from the right (+X).
         azimuth: f64,
-        /// Above the horizon, radians, clamped to -1.5 to 1.5.
+        /// Elevation above the horizon, radians, clamped to -1.5 to 1.5.
         elevation: f64,
     },
-    /// A sheet of `frames` perspective views around the upright axis.
+    /// A sheet of `frames` perspective views around the vertical axis.
     Turntable {
         /// Number of views, 1 to 360.
         frames: u32,
     },
-    /// Perspective by a camera that is calibrated and stands where it is put.
+    /// Perspective by a calibrated camera with a given position.
     Pinhole(Pinhole),
 }
 
-/// A camera by its place and its intrinsics, as computer vision has them: x right, y down, z along the view.
+/// A camera with its position and intrinsics in the convention of computer vision: x right, y down, z along the view.
 ///
-/// A point at (x, y, z) metres of the camera is seen at pixel (fx x / z + cx, fy y / z + cy), with (0, 0) the upper left corner of
-/// the picture and (0.5, 0.5) the middle of its first pixel. No distortion.
+/// A point at (x, y, z) metres of the camera appears at pixel (fx x / z + cx, fy y / z + cy), with (0, 0) the upper
+/// left corner of the picture and (0.5, 0.5) the centre of its first pixel. No distortion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pinhole {
-    /// Where the eye is, metres.
+    /// Position of the eye, metres.
     pub eye_m: DVec3,
     /// To the right of the picture, a unit vector.
     pub right: DVec3,
@@ -57,10 +58,10 @@ pub struct Pinhole {
 }
 
 impl Pinhole {
-    /// How far the axes may be from unit length and from a right angle.
+    /// Tolerance for the unit length and the right angle of the axes.
     const AXES_OFF_MOST: f64 = 1e-6;
 
-    /// Whether all of it is finite, the axes are orthonormal and focal lengths are above 0.
+    /// Whether all numbers are finite, the axes orthonormal and the focal lengths above 0.
     pub fn is_sound(&self) -> bool {
         let unit = |v: DVec3| v.is_finite() && (v.length() - 1.0).abs() <= Self::AXES_OFF_MOST;
         let places = self.eye_m.is_finite() && self.principal_px.is_finite() && self.focal_px.is_finite();
@@ -69,7 +70,7 @@ impl Pinhole {
     }
 }
 
-/// What is behind the model.
+/// Background of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Background {
     /// A light blue sky above a pale ground, as bright as the light that comes from it.
@@ -81,7 +82,7 @@ pub enum Background {
     Plain([u8; 3]),
 }
 
-/// What a picture shows and how.
+/// Contents and appearance of a picture.
 ///
 /// ```
 /// let spec = render::PictureSpec { view: render::View::Front, ..Default::default() };
@@ -93,25 +94,26 @@ pub struct PictureSpec {
     pub width: u32,
     /// Pixels down, 1 to 8192, default 768.
     pub height: u32,
-    /// Where from, default three-quarter.
+    /// Viewpoint, default three-quarter.
     pub view: View,
-    /// What is behind, default sky.
+    /// Background, default sky.
     pub background: Background,
-    /// The model casts a shadow on the ground below it, default true. Not seen in the level views front and side.
+    /// The model casts a shadow on the ground below it, default true. Not visible in the horizontal views front and
+    /// side.
     pub ground_shadow: bool,
     /// Samples along a pixel's edge (16 a pixel for 4), 1 to 6, default 4.
     pub supersample: u32,
-    /// Free share of the picture's edge on each side, 0 to 0.45, default 0.06.
+    /// Margin on each side, as a share of the picture's edge, 0 to 0.45, default 0.06.
     pub margin: f64,
     /// Brightness, 0.1 to 10, default 1.
     pub exposure: f64,
-    /// Turns the pattern of the lights.
+    /// Seed of the pattern of the lights.
     pub seed: Seed,
-    /// Unit vector towards the sun, above the horizon. Default none: it stands beside the viewer, to the upper left.
+    /// Unit vector towards the sun, above the horizon. Default none: it stands next to the viewer, to the upper left.
     pub sun: Option<DVec3>,
-    /// How bright the sun is, 0 to 4, as a share of the usual, default 1.
+    /// Brightness of the sun, 0 to 4, as a share of the usual, default 1.
     pub sunshine: f64,
-    /// How bright the sky and what the ground throws back are, 0 to 4, as a share of the usual, default 1.
+    /// Brightness of the sky and of the light reflected by the ground, 0 to 4, as a share of the usual, default 1.
     pub skylight: f64,
 }
 
@@ -135,7 +137,8 @@ impl Default for PictureSpec {
 }
 
 impl PictureSpec {
-    /// The same with every number inside its range; what is not finite takes its default, and so does a camera that is not sound.
+    /// Returns the same with every number inside its range; a number that is not finite, or a camera that is not sound,
+    /// takes its default.
     #[must_use]
     pub fn clamped(&self) -> Self {
         let finite = |x: f64, default: f64| if x.is_finite() { x } else { default };

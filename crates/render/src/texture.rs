@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 const STEPS: usize = 1 << 14;
 
-/// sRGB byte of a linear value; 0 for NaN.
+/// Returns the sRGB byte of a linear value; 0 for NaN.
 pub(crate) fn srgb(x: f64) -> u8 {
     static TABLE: OnceLock<Vec<u8>> = OnceLock::new();
     let table =
@@ -25,22 +25,22 @@ struct Level {
 /// A texture and its halved copies down to one texel.
 pub(crate) struct Pyramid {
     levels: Vec<Level>,
-    // Alpha below one half, apart from the colours: shadows ask for nothing else, and often.
+    // Alpha below one half, stored apart from the colours: shadows need only this, and often.
     holes: Vec<bool>,
 }
 
 impl Pyramid {
-    /// Of an sRGB picture. `None` for a texture without pixels or with too few bytes.
+    /// Makes the pyramid of an sRGB picture. `None` for a texture without pixels or with too few bytes.
     pub(crate) fn new(texture: &mesh::Texture) -> Option<Self> {
-        Self::of(texture, base::light_of_byte)
+        Self::from_texture(texture, base::light_of_byte)
     }
 
-    /// Of numbers: normals, roughness.
+    /// Makes the pyramid of plain numbers: normals, roughness.
     pub(crate) fn of_numbers(texture: &mesh::Texture) -> Option<Self> {
-        Self::of(texture, |byte| f64::from(byte) / 255.0)
+        Self::from_texture(texture, |byte| f64::from(byte) / 255.0)
     }
 
-    fn of(texture: &mesh::Texture, linear: fn(u8) -> f64) -> Option<Self> {
+    fn from_texture(texture: &mesh::Texture, linear: fn(u8) -> f64) -> Option<Self> {
         let (width, height) = (texture.width as usize, texture.height as usize);
         let bytes = width.checked_mul(height)?.checked_mul(4)?;
         if bytes == 0 || texture.pixels.len() < bytes {
@@ -61,12 +61,12 @@ impl Pyramid {
         Some(Self { levels, holes })
     }
 
-    /// Texels of the full size.
+    /// Returns the number of texels of the full size.
     pub(crate) fn texel_count(&self) -> f64 {
         (self.levels[0].width * self.levels[0].height) as f64
     }
 
-    /// Linear RGB and alpha at `uv` (v down, repeating), between two sizes. `lod` 0 is the full size.
+    /// Returns linear RGB and alpha at `uv` (v down, repeating), between two sizes. `lod` 0 is the full size.
     pub(crate) fn sample(&self, uv: DVec2, lod: f64) -> (DVec3, f64) {
         let lod = lod.clamp(0.0, (self.levels.len() - 1) as f64);
         let k = lod as usize;
@@ -78,7 +78,7 @@ impl Pyramid {
         if c.w > 1e-6 { (c.truncate() / c.w, c.w) } else { (DVec3::ZERO, 0.0) }
     }
 
-    /// The nearest full-size texel is a hole: cut at every sample, so that averaging comes later.
+    /// Whether the nearest full-size texel is a hole: cut at every sample, so that averaging comes later.
     pub(crate) fn hole(&self, u: f32, v: f32) -> bool {
         let (width, height) = (self.levels[0].width, self.levels[0].height);
         let place = |x: f32, n: usize| {
@@ -90,7 +90,7 @@ impl Pyramid {
     }
 }
 
-// Any number into [0, n); NaN into 0.
+// Maps any number into [0, n); NaN to 0.
 fn wrap(x: f64, n: usize) -> f64 {
     let n = n as f64;
     // By a cast: a call of floor for every sample is slow, and beyond 2^63 the place does not matter.

@@ -8,25 +8,25 @@ use glam::DVec2;
 pub(crate) struct Circle {
     pub(crate) centre: DVec2,
     pub(crate) radius: f64,
-    /// Root mean square distance of its own points from it.
+    /// Root mean square distance between it and its own points.
     pub(crate) rms: f64,
-    /// Points near it.
+    /// Number of points near it.
     pub(crate) own: usize,
-    /// Of all points, the share near it.
+    /// Share of all points that lie near it.
     pub(crate) share: f64,
-    /// The share of its circumference that has points, 0 to 1.
+    /// Share of its circumference that has points, 0 to 1.
     pub(crate) covered: f64,
-    /// Of all points, the share well inside it: wood has none.
+    /// Share of all points that lie well inside it: wood has none.
     pub(crate) inside: f64,
 }
 
-/// Sectors of a circumference.
+/// Number of sectors of a circumference.
 const SECTORS: usize = 16;
 
-/// The circle that most points lie near: the best of many through three points (Fischler and Bolles 1981), then the least
-/// squares of distances of what lies near it. `noise`: what a point may be off. `largest`: no larger radius.
+/// Fits the circle near which most points lie: the best of many through three points (Fischler and Bolles 1981), then
+/// the least squares of the distances of the points near it. `noise`: error of a point. `largest`: greatest radius.
 ///
-/// None for fewer than 6 points, or where none is sound.
+/// None for fewer than 6 points, or if no circle is sound.
 pub(crate) fn fit_circle(points: &[DVec2], noise: f64, largest: f64, stream: &mut Stream) -> Option<Circle> {
     if points.len() < 6 {
         return None;
@@ -39,7 +39,7 @@ pub(crate) fn fit_circle(points: &[DVec2], noise: f64, largest: f64, stream: &mu
             continue;
         }
         let width = noise.max(0.06 * radius);
-        // A soft count, less what lies well inside: bark has nothing in it.
+        // A soft count of points, less those well inside: bark has nothing in it.
         let score: f64 = points
             .iter()
             .map(|p| {
@@ -88,7 +88,7 @@ pub(crate) fn fit_circle(points: &[DVec2], noise: f64, largest: f64, stream: &mu
     })
 }
 
-/// A step of Gauss and Newton with Tukey's weights.
+/// Returns a step of Gauss and Newton with Tukey's weights.
 fn step(points: &[DVec2], centre: DVec2, radius: f64, width: f64) -> Option<(DVec2, f64)> {
     let mut m = [0.0; 9];
     let mut b = [0.0; 3];
@@ -109,7 +109,7 @@ fn step(points: &[DVec2], centre: DVec2, radius: f64, width: f64) -> Option<(DVe
             }
         }
     }
-    // A little stiffness keeps short arcs from running away.
+    // A small regularisation keeps short arcs from diverging.
     let whole = m[8];
     (0..2).for_each(|i| m[4 * i] += 0.02 * whole);
     geom::solve_positive(&mut m, &mut b)?;

@@ -1,32 +1,36 @@
-//! Leaves told from wood by the ways from the foot.
+//! Separation of leaves and wood by the paths from the foot.
 //!
-//! Water, and the shortest way, comes to a leaf through the wood that bears it. Many ways run through wood and few through
-//! a leaf (Vicari et al. 2019); what the ways to wood pass is wood again. Geometry says whether there are leaves at all:
-//! wood is a line or a surface at the size of a twig, a crown in leaf is neither (Wang, Momo Takoudjou and Casella 2020).
+//! Water, and the shortest path, reaches a leaf through the wood that bears it. Many paths run through wood and few
+//! through a leaf (Vicari et al. 2019); the cubes on the paths to wood are wood again. Geometry shows whether there
+//! are leaves at all: at the size of a twig, wood is a line or a surface, and a crown in leaf is neither (Wang, Momo
+//! Takoudjou and Casella 2020).
 
 use base::{CancelToken, Cancelled};
 use glam::DVec3;
+use mesh::PointClass;
 
 use crate::ways::{CUBES_AT_ONCE, NONE, Ways};
 
-/// Metres beyond which no leaf with its stalk reaches.
+/// Greatest reach of a leaf with its stalk, metres.
 const LEAF: f64 = 0.15;
-/// Wood is seen as far as this from the ways that run through it, in cubes.
+/// Greatest distance of visible wood from the paths that run through it, in cubes.
 const ASIDE: f64 = 4.0;
-/// Radius in which the form of the cloud is seen, metres; and the least cubes that show it.
+/// Least radius in which the form of the cloud is measured, metres.
 const FORM: f64 = 0.06;
+/// Least number of cubes that show the form.
 const FEW: usize = 8;
-/// A line, or a surface: shares of variances.
+/// Least difference of the two greatest variances of a line, as a share of the greatest.
 const LINE: f64 = 0.7;
+/// Greatest share of the least variance of a surface in their sum.
 const FLAT: f64 = 0.06;
-/// Share of scattered cubes from which on a tree is in leaf.
+/// Share of scattered cubes from which a tree is in leaf.
 pub(crate) const SCATTERED: f64 = 0.36;
-/// Cubes that are looked at.
+/// Most cubes that are measured.
 const SAMPLE: usize = 20_000;
-/// Cubes of these between two looks whether the tree is still wanted: each has up to some thousand neighbours.
+/// Number of these cubes between two checks for cancellation: each has up to some thousand neighbours.
 const PLACES_AT_ONCE: usize = 64;
 
-/// Which cubes of the tree are wood.
+/// Returns for each cube whether it is wood of the tree.
 pub(crate) fn wood(
     ways: &Ways,
     mine: impl Fn(usize) -> bool,
@@ -34,7 +38,7 @@ pub(crate) fn wood(
 ) -> Result<Vec<bool>, Cancelled> {
     let beyond = beyond(ways, &mine);
     let mut wood: Vec<bool> = (0..ways.len()).map(|c| mine(c) && beyond[c] >= LEAF).collect();
-    // The whole surface of the wood that the ways run along.
+    // The whole surface of the wood along which the paths run.
     let core: Vec<usize> = (0..ways.len()).filter(|&c| wood[c]).collect();
     let near = ASIDE * ways.voxels.cell();
     let mut aside = vec![f64::INFINITY; ways.len()];
@@ -60,6 +64,29 @@ pub(crate) fn wood(
     Ok(wood)
 }
 
+/// Which cubes of the tree are wood where the file says of points that they are wood or leaf: those with as many points of wood as
+/// of leaves, and what the ways to them pass. Points of no class are what the file names no class for.
+pub(crate) fn labelled_wood(
+    ways: &Ways,
+    classes: &[PointClass],
+    mine: impl Fn(usize) -> bool,
+) -> Option<Vec<bool>> {
+    let has = |class| classes.contains(&class);
+    let (has_wood, has_leaves) = (has(PointClass::Wood), has(PointClass::Leaf));
+    if !has_wood && !has_leaves {
+        return None;
+    }
+    let is_core = |c: usize| {
+        let count = |class| ways.voxels.rows(c).iter().filter(|&&p| classes[p as usize] == class).count();
+        let (wood, leaves) = (count(PointClass::Wood), count(PointClass::Leaf));
+        if has_leaves { leaves == 0 || wood >= leaves } else { wood > 0 }
+    };
+    let mut wood = vec![false; ways.len()];
+    let core: Vec<usize> = (0..ways.len()).filter(|&c| mine(c) && is_core(c)).collect();
+    core.iter().for_each(|&c| retrace(ways, c, &mut wood));
+    (!core.is_empty()).then_some(wood)
+}
+
 /// A cube and those that the way to it passes.
 fn retrace(ways: &Ways, c: usize, wood: &mut [bool]) {
     wood[c] = true;
@@ -70,7 +97,7 @@ fn retrace(ways: &Ways, c: usize, wood: &mut [bool]) {
     }
 }
 
-/// How far the ways go on beyond each cube.
+/// Returns how far the paths continue beyond each cube.
 fn beyond(ways: &Ways, mine: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut order: Vec<usize> = (0..ways.len()).filter(|&c| mine(c)).collect();
     order.sort_unstable_by(|&a, &b| ways.way[b].total_cmp(&ways.way[a]).then(a.cmp(&b)));
@@ -84,7 +111,7 @@ fn beyond(ways: &Ways, mine: impl Fn(usize) -> bool) -> Vec<f64> {
     end.iter().zip(&ways.way).map(|(e, w)| if w.is_finite() { e - w } else { 0.0 }).collect()
 }
 
-/// The share of cubes about which the cloud is neither a line nor a surface.
+/// Returns the share of cubes around which the cloud is neither a line nor a surface.
 pub(crate) fn scattered(
     ways: &Ways,
     mine: impl Fn(usize) -> bool,

@@ -1,4 +1,4 @@
-//! The terrain below a tree: a smooth surface through the lowest points, cell by cell.
+//! The terrain below a tree: a smooth surface through the lowest points of each cell.
 
 use geom::solve_positive;
 use glam::DVec3;
@@ -9,18 +9,19 @@ pub struct Ground {
     cell: f64,
     low: [f64; 2],
     size: [usize; 2],
-    /// Height of each cell's middle, x fastest.
+    /// Height of each cell's centre, x fastest.
     height: Vec<f64>,
-    /// How far points of the ground lie above or below it, metres.
+    /// Half the thickness of the layer of ground points, metres.
     pub thickness_m: f64,
 }
 
-/// Squares along the longer side, at most.
+/// Most squares along the longer side.
 const CELLS: f64 = 80.0;
 
 impl Ground {
-    /// The ground of a cloud with +Y up; none where the lowest points make no surface: at least a third of the squares
-    /// that hold points hold points of it, less than one in fifty lies below, and it rises by less than 45 degrees.
+    /// Finds the ground of a cloud with +Y up; none if the lowest points form no surface. It must explain at least a
+    /// third of the squares that hold points, have less than one point in fifty below it, and rise by less than 45
+    /// degrees.
     ///
     /// Cost: linear.
     pub fn find(points: &[DVec3]) -> Option<Self> {
@@ -46,10 +47,10 @@ impl Ground {
             return None;
         }
         let trend = Trend::through(&ground, &lowest, &seen)?;
-        // What a square's lowest point may be off: it is rough, and the trend does not know its bumps.
+        // Tolerance of a square's lowest point: the ground is rough, and the trend does not know its bumps.
         let near = (0.02 * wide).min(0.3).max(0.1 * cell).min(0.1 * size.y);
         let on: Vec<usize> =
-            seen.iter().copied().filter(|&c| (lowest[c] - trend.at(&ground, c)).abs() < near).collect();
+            seen.iter().copied().filter(|&c| (lowest[c] - trend.height(&ground, c)).abs() < near).collect();
         if on.len() * 3 < seen.len() || on.len() < 10 || trend.steep() {
             return None;
         }
@@ -69,7 +70,7 @@ impl Ground {
         Some(ground)
     }
 
-    /// Height of the ground below a point.
+    /// Returns the height of the ground below a point.
     pub fn height(&self, p: DVec3) -> f64 {
         let at = [p.x, p.z];
         let f =
@@ -91,7 +92,7 @@ impl Ground {
         [0, 1].map(|k| self.low[k] + (at[k] as f64 + 0.5) * self.cell)
     }
 
-    /// The third lowest point of each square: two may be noise below the ground.
+    /// Returns the third lowest point of each square: two may be noise below the ground.
     fn lowest(&self, points: &[DVec3]) -> Vec<f64> {
         let mut three = vec![[f64::INFINITY; 3]; self.height.len()];
         for p in points {
@@ -107,10 +108,10 @@ impl Ground {
         three.into_iter().map(|t| t[2]).collect()
     }
 
-    /// Heights of all cells: the lowest point where it lies near the trend, between them the neighbours' offset.
+    /// Sets the heights of all cells to the trend plus the median offset of the lowest points nearby.
     fn fill(&mut self, lowest: &[f64], on: &[usize], trend: &Trend, near: f64) {
         let mut off = vec![f64::NAN; self.height.len()];
-        on.iter().for_each(|&c| off[c] = lowest[c] - trend.at(self, c));
+        on.iter().for_each(|&c| off[c] = lowest[c] - trend.height(self, c));
         for c in 0..self.height.len() {
             let [x, z] = [c % self.size[0], c / self.size[0]];
             let mut around = vec![];
@@ -126,7 +127,7 @@ impl Ground {
             }
             base::sort_numbers(&mut around);
             let median = around.get(around.len() / 2).copied().unwrap_or(0.0);
-            self.height[c] = trend.at(self, c) + median.clamp(-near, near);
+            self.height[c] = trend.height(self, c) + median.clamp(-near, near);
         }
     }
 }
@@ -139,13 +140,14 @@ struct Trend {
 }
 
 impl Trend {
-    /// Through the lowest points, those above it weighing less from round to round: below a crown nothing else is seen.
+    /// Fits the lowest points; those above the surface get less weight from round to round, because below a crown
+    /// only the ground is lower.
     fn through(ground: &Ground, lowest: &[f64], seen: &[usize]) -> Option<Self> {
         let middle = [0, 1].map(|k| ground.low[k] + 0.5 * ground.size[k] as f64 * ground.cell);
         let scale = 0.5 * ground.size[0].max(ground.size[1]) as f64 * ground.cell;
         let mut heights: Vec<f64> = seen.iter().map(|&c| lowest[c]).collect();
         base::sort_numbers(&mut heights);
-        // A level at the lower quarter to begin with.
+        // Start with a level at the lower quartile.
         let mut trend =
             Self { factors: [heights[heights.len() / 4], 0.0, 0.0, 0.0, 0.0, 0.0], middle, scale };
         let spread = (heights[heights.len() / 2] - heights[0]).max(0.05 * scale);
@@ -155,7 +157,7 @@ impl Trend {
             let mut m = vec![0.0; n * n];
             let mut b = vec![0.0; n];
             for &c in seen {
-                let off = lowest[c] - trend.at(ground, c);
+                let off = lowest[c] - trend.height(ground, c);
                 let r = off / if off > 0.0 { width } else { 2.0 * width };
                 let weight = 1.0 / (1.0 + r * r * r * r);
                 let row = trend.row(ground, c);
@@ -166,7 +168,7 @@ impl Trend {
                     }
                 }
             }
-            // A little stiffness: bends need evidence.
+            // A small regularisation: curvature needs evidence.
             for i in 0..n {
                 m[i * n + i] += if i < 3 { 1e-9 } else { 0.02 } * seen.len() as f64;
             }
@@ -182,7 +184,7 @@ impl Trend {
         [1.0, x, z, x * x, x * z, z * z]
     }
 
-    fn at(&self, ground: &Ground, cell: usize) -> f64 {
+    fn height(&self, ground: &Ground, cell: usize) -> f64 {
         self.row(ground, cell).iter().zip(self.factors).map(|(r, f)| r * f).sum()
     }
 

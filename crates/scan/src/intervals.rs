@@ -1,4 +1,4 @@
-//! Between which values the figures of a found tree lie.
+//! Intervals of the figures of a found tree.
 
 use base::ops;
 use plant::{AxisId, Plant};
@@ -6,12 +6,12 @@ use plant::{AxisId, Plant};
 use crate::radii::PipeSource;
 use crate::wanted::ScanTally;
 
-/// A figure lies between these two; 9 of 10 true values do, as virtual trees have it (`docs/scans.md`).
+/// An interval that holds 9 of 10 true values, as measured on virtual trees (`docs/scans.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interval {
-    /// The least that is plausible.
+    /// Least plausible value.
     pub low: f64,
-    /// The most.
+    /// Greatest plausible value.
     pub high: f64,
 }
 
@@ -26,7 +26,7 @@ pub struct Intervals {
     pub volume_m3: Interval,
 }
 
-/// How well the radius of a node is known.
+/// Accuracy of the radius of a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenNode {
     /// Standard error of its logarithm.
@@ -35,21 +35,24 @@ pub(crate) struct SeenNode {
     pub(crate) is_seen: bool,
 }
 
-/// Nine tenths of a normal distribution lie within so many standard deviations.
+/// Nine tenths of a normal distribution lie within this number of standard deviations.
 const NINE_TENTHS: f64 = 1.645;
 
-/// What the errors of the fits leave out, as standard deviations; chosen on virtual trees (`docs/scans.md`).
+/// Errors beyond those of the fits, as standard deviations; chosen on virtual trees (`docs/scans.md`).
 struct Unknowns {
-    /// Of the logarithm of the volume of wood whose radius was not seen: the exponent was fitted, and it was not.
+    /// Error of the logarithm of the volume of wood whose radius was not seen, with a fitted exponent.
     model: f64,
+    /// The same with an exponent that was not fitted.
     guess: f64,
-    /// Of the logarithm of all volume: sections are no circles, and twigs are missing; in leaf.
+    /// Error of the logarithm of all volume: sections are not circles, and twigs are missing.
     form: f64,
+    /// The same for a tree in leaf.
     form_in_leaf: f64,
-    /// Of the logarithm of a diameter.
+    /// Error of the logarithm of a diameter.
     bark: f64,
-    /// Of the height, as a share of it; in leaf. A cube is added.
+    /// Error of the height, as a share of it; the edge of a cube is added.
     top: f64,
+    /// The same for a tree in leaf.
     top_in_leaf: f64,
 }
 
@@ -64,8 +67,8 @@ const UNKNOWNS: Unknowns = Unknowns {
 };
 
 impl Intervals {
-    /// By the errors of the smoothed radii (one of an axis is all wrong in the same way, and axes differ), and what these
-    /// leave out.
+    /// Computes the intervals from the errors of the smoothed radii (those of one axis go together, those of
+    /// different axes are independent) and from the unknowns.
     pub(crate) fn new(plant: &Plant, nodes: &[SeenNode], tally: &ScanTally, in_leaf: bool) -> Self {
         let measured = plant.measure();
         let u = &UNKNOWNS;
@@ -107,14 +110,14 @@ impl Intervals {
 }
 
 impl Interval {
-    /// About a figure whose logarithm has this standard error.
+    /// Returns the interval about a figure whose logarithm has this standard error.
     fn around(figure: f64, error: f64) -> Self {
         let factor = ops::exp(NINE_TENTHS * error);
         Self { low: figure / factor, high: figure * factor }
     }
 }
 
-/// The error of the thickest stem at 1.3 m.
+/// Returns the error of the thickest stem at 1.3 m.
 fn at_breast_height(plant: &Plant, nodes: &[SeenNode]) -> f64 {
     let stems = (0..plant.axes.len()).map(AxisId::new).filter(|&id| plant.axis(id).bearer.is_none());
     let thickest = stems.max_by(|&a, &b| {

@@ -1,4 +1,4 @@
-//! Level sets of the ways from the foot -> the skeleton: a tree of rings (a Reeb graph; Xu, Gossett and Chen 2007).
+//! Level sets of the paths from the foot -> the skeleton: a tree of rings (a Reeb graph; Xu, Gossett and Chen 2007).
 
 use base::{CancelToken, Cancelled};
 use glam::DVec3;
@@ -10,17 +10,17 @@ use crate::ways::{CUBES_AT_ONCE, NONE, Ways};
 pub(crate) struct Ring {
     /// Its cubes.
     pub(crate) cubes: Vec<u32>,
-    /// Mean place, then the middle of its circle.
+    /// Mean position; later the centre of its circle.
     pub(crate) middle: DVec3,
     /// The ring below; [`NONE`] for the foot.
     pub(crate) below: u32,
     /// Root mean square distance of its cubes from their mean.
     pub(crate) spread: f64,
-    /// Length of all wood above it, its own part too.
+    /// Length of all wood above it, including its own part.
     pub(crate) load: f64,
-    /// Longest way above it.
+    /// Longest path above it.
     pub(crate) reach: f64,
-    /// Not pruned.
+    /// Whether it is not pruned.
     pub(crate) alive: bool,
 }
 
@@ -32,7 +32,7 @@ pub(crate) struct Rings {
 }
 
 impl Rings {
-    /// Cuts the cubes of one plant into bands of its ways.
+    /// Cuts the cubes of one plant into bands of path length.
     pub(crate) fn new(
         ways: &Ways,
         band: f64,
@@ -95,7 +95,7 @@ impl Rings {
         Ok(all)
     }
 
-    /// Loads and reaches anew, after rings were pruned.
+    /// Computes loads and reaches again, after pruning.
     pub(crate) fn weigh(&mut self) {
         for r in &mut self.rings {
             (r.load, r.reach) = (self.band, self.band);
@@ -113,7 +113,7 @@ impl Rings {
         }
     }
 
-    /// Rings above each ring that are alive.
+    /// Returns the rings above each ring that are alive.
     pub(crate) fn above(&self) -> Vec<Vec<u32>> {
         let mut above = vec![vec![]; self.rings.len()];
         for (k, r) in (0_u32..).zip(&self.rings) {
@@ -124,10 +124,10 @@ impl Rings {
         above
     }
 
-    /// Prunes spurs: what branches off and does not reach farther than the wood that bears it is thick, or than
-    /// `least` bands. They are bumps of bark, and rings that fell into pieces.
+    /// Prunes spurs: side branches that reach no farther than the bearing wood is thick, or than `least` bands. They
+    /// are bumps of bark, and rings that fell into pieces.
     pub(crate) fn prune(&mut self, least: f64) {
-        // From the tips: what is left after a spur is gone may be one itself.
+        // Several rounds: after a spur is pruned, the rest may be a spur itself.
         for _ in 0..3 {
             let above = self.above();
             let mut dead = vec![false; self.rings.len()];
@@ -155,19 +155,19 @@ impl Rings {
         }
     }
 
-    /// Of the rings above one the one that continues the axis: the most wood.
+    /// Returns the ring that continues the axis among the rings above one: that with the most wood.
     pub(crate) fn main_of(&self, heads: &[u32]) -> Option<u32> {
         heads.iter().copied().max_by(|&a, &b| {
             self.rings[a as usize].load.total_cmp(&self.rings[b as usize].load).then(b.cmp(&a))
         })
     }
 
-    /// Axes: runs of rings from a fork to a tip, each with the ring that bears it; bearers first.
+    /// Returns the axes: runs of rings from a fork to a tip, each with the ring that bears it; bearers first.
     pub(crate) fn axes(&self) -> Vec<(u32, Vec<u32>)> {
         let above = self.above();
         let mut out: Vec<(u32, Vec<u32>)> = vec![];
         let mut work: std::collections::VecDeque<(u32, u32)> = std::collections::VecDeque::new();
-        // What stands beside the stem and goes nowhere is grass or a root.
+        // A short piece next to the stem is grass or a root.
         let high = self.rings.iter().filter(|r| r.below == NONE).map(|r| r.reach).fold(0.0, f64::max);
         let feet = (0_u32..).zip(&self.rings);
         let feet = feet.filter(|(_, r)| r.below == NONE && r.alive && r.reach >= 0.25 * high);

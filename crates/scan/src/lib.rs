@@ -1,22 +1,22 @@
 //! Whole trees and seedlings from laser scans.
 //!
-//! `points -> ground, noise -> stems -> ways along the surface -> level sets -> axes -> radii -> Plant`
+//! `points -> ground, noise -> stems -> paths along the surface -> level sets -> axes -> radii -> Plant`
 //!
 //! | module | owns |
 //! |---|---|
 //! | `ground` | [`Ground`]: the terrain below a tree |
-//! | `ways` | ways along the surface from the foot, across gaps |
-//! | `trunks` | trunks seen at breast height: how many trees there are |
-//! | `stems` | what stands on the ground: the tree, and what is left out |
-//! | `foliage` | leaves told from wood |
-//! | `levels` | level sets of the ways: the skeleton |
+//! | `ways` | paths along the surface from the foot, across gaps |
+//! | `trunks` | trunks at breast height: the number of trees |
+//! | `stems` | things on the ground: the tree, and others, which are left out |
+//! | `foliage` | separation of leaves and wood |
+//! | `levels` | level sets of the paths: the skeleton |
 //! | `circle` | circles through noisy points |
 //! | `radii` | radii from circles, the pipe model where points are few |
-//! | `intervals` | [`Intervals`]: between which values volume, diameter and height lie |
-//! | `tree` | [`find_tree`]: the whole way |
-//! | `plot` | [`find_plot`]: many trees, points shared among them |
-//! | `surface` | [`wood_gap`]: how far the wood of two plants is apart |
-//! | `scanner` | [`scan`]: what a scanner would see of a mesh, for trials |
+//! | `intervals` | [`Intervals`] of volume, diameter and height |
+//! | `tree` | [`find_tree`]: all steps |
+//! | `plot` | [`find_plot`]: many trees, with the points assigned to them |
+//! | `surface` | [`wood_gap`]: distance between the wood of two plants |
+//! | `scanner` | [`scan`]: the points that a scanner would measure on a mesh, for trials |
 
 mod circle;
 mod error;
@@ -42,4 +42,4 @@ pub use radii::PipeSource;
 pub use scanner::{ScannerSpec, scan, wood_mesh};
 pub use surface::{Gap, wood_gap};
 pub use tree::{FoundTree, find_tree};
-pub use wanted::{ScanTally, TreeScanSpec};
+pub use wanted::{ScanPoints, ScanTally, TreeScanSpec};

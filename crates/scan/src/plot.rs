@@ -1,7 +1,8 @@
-//! A cloud of many trees -> the stems in it, each with the points that are its own.
+//! A cloud of many trees -> its stems, each with its own points.
 
 use base::{Cancelled, Draw, Report, Run, Seed, ops};
 use glam::DVec3;
+use mesh::PointClass;
 
 use crate::ScanTreeError;
 use crate::circle::fit_circle;
@@ -9,69 +10,74 @@ use crate::ground::Ground;
 use crate::stems::{Site, Trunk};
 use crate::tree::{FoundTree, Scene};
 use crate::trunks::find_trunks;
-use crate::wanted::TreeScanSpec;
+use crate::wanted::{ScanPoints, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 
-/// A tree of a plot, before its wood is sought.
+/// A tree of a plot, before its wood is searched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlotTree {
-    /// Where its trunk stands near the ground, x and z in the cloud.
+    /// Place of its trunk near the ground, x and z in the cloud.
     pub place: [f64; 2],
     /// Radius of its trunk, metres.
     pub radius_m: f64,
     /// Height of its highest point over the ground, metres.
     pub height_m: f64,
-    /// Its points.
+    /// Number of its points.
     pub points: usize,
-    /// Its crown ends where the cloud does: some of it is missing.
+    /// Its crown ends at the edge of the cloud: some of it is missing.
     pub is_cut: bool,
 }
 
-/// A plot whose points are shared among its trees.
+/// A plot with its points assigned to its trees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
     /// Its trees, from west to east (by x, then z).
     pub trees: Vec<PlotTree>,
-    /// The ground, where there is one.
+    /// The ground, if there is one.
     pub ground: Option<Ground>,
-    /// Usable points, of the ground too.
+    /// Number of usable points, including the ground.
     pub points: usize,
-    /// Of the ground.
+    /// Number of points of the ground.
     pub ground_points: usize,
-    /// Of undergrowth, people, walls: what stands on the ground and is no trunk.
+    /// Number of points of undergrowth, people and walls: things on the ground that are not trunks.
     pub others: usize,
-    /// Of what hangs together with nothing.
+    /// Number of points that are connected with nothing.
     pub loose: usize,
     above: Vec<DVec3>,
+    /// Their classes in the file; empty, or one for each point.
+    classes: Vec<PointClass>,
     /// The tree of each point above the ground; [`NONE`] for none.
     owner: Vec<u32>,
 }
 
-/// Undergrowth and other low things reach up as trunks of this radius do, metres.
+/// Undergrowth and other low things compete for cubes like a trunk of this radius, metres.
 const UNDERGROWTH_M: f64 = 0.01;
-/// What is nearer to a trunk at the ground, beyond its bark, is its foot, metres.
+/// Cubes nearer to a trunk at the ground, beyond its bark, belong to its foot, metres.
 const FOOT_M: f64 = 0.25;
-/// A crown of which so many points lie so near the edge of the cloud, metres, is cut by it.
+/// A crown is cut by the edge of the cloud if more than this share of its points lies nearer to the edge than this
+/// distance in metres.
 const CUT: (f64, f64) = (0.01, 0.15);
 
-/// Finds the trees of a plot and shares its points among them.
+/// Finds the trees of a plot and assigns its points to them.
 ///
-/// Trunks are followed up as far as they are round. Each cube goes to the trunk to which the way through the cloud is shortest for
-/// its size: ways count by the radius of the trunk to the power of 2/3, as crowns are as much wider (comparative shortest paths; Tao
-/// et al. 2015, who take the way to the foot; by that a branch takes the top of a smaller tree that it touches). What touches the
-/// ground and is no trunk draws what hangs together with it to itself.
+/// Trunks are followed upwards as far as they are round. Each cube goes to the trunk with the shortest relative path
+/// through the cloud: paths are divided by the radius of the trunk to the power of 2/3, because crowns widen in this
+/// proportion (comparative shortest paths; Tao et al. 2015, who measure the path to the foot, with which a branch
+/// takes the top of a smaller tree that it touches). Things on the ground that are not trunks take what is connected
+/// with them.
 ///
-/// Guaranteed: each point has one tree at most; the same bits for any executor. Not guaranteed: trunks that are hidden from 0.3 to
-/// 2.7 m. Cost: n log n.
+/// Guaranteed: each point has at most one tree; the same bits for any executor. Not guaranteed: trunks that are
+/// hidden from 0.3 to 2.7 m. Cost: n log n.
 ///
 /// # Errors
 /// [`ScanTreeError`]; [`ScanTreeError::NoStem`] where no trunk is seen.
-pub fn find_plot(
-    points: &[DVec3],
+pub fn find_plot<'a>(
+    points: impl Into<ScanPoints<'a>>,
     spec: &TreeScanSpec,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Plot, ScanTreeError> {
+    let points = points.into();
     let scene = Scene::read(points, run, report)?;
     let mut ways = scene.ways(spec.cell_m, run)?;
     let site = scene.site(&ways);
@@ -86,7 +92,7 @@ pub fn find_plot(
     let usual = (0.04 * scene.height).clamp(0.02 * scene.height.min(5.0), 0.6).max(4.0 * ways.voxels.cell());
     follow(&scene.above, &ways, &mut trunks, spec.noise_m, run)?;
     share(&mut ways, &site, &trunks, spec.gap_m.unwrap_or(usual), run)?;
-    let edges = edges(points);
+    let edges = edges(points.places);
     let mut trees: Vec<PlotTree> = trunks
         .iter()
         .map(|t| PlotTree {
@@ -117,19 +123,26 @@ pub fn find_plot(
     for (tree, at_edge) in trees.iter_mut().zip(at_edge) {
         tree.is_cut = at_edge as f64 > CUT.0 * tree.points as f64;
     }
-    let Scene { above, ground, points, .. } = scene;
-    Ok(Plot { trees, ground, points, ground_points: points - above.len(), others, loose, above, owner })
+    let Scene { above, classes, ground, points, .. } = scene;
+    let ground_points = points - above.len();
+    Ok(Plot { trees, ground, points, ground_points, others, loose, above, classes, owner })
 }
 
 impl Plot {
-    /// The points above the ground, each with the number of its tree; none for what is no tree's.
+    /// Returns the points above the ground, each with the number of its tree; none for points without a tree.
     pub fn owned(&self) -> impl ExactSizeIterator<Item = (DVec3, Option<usize>)> + '_ {
         self.above.iter().zip(&self.owner).map(|(&p, &o)| (p, (o != NONE).then_some(o as usize)))
     }
 
-    /// The points of a tree.
+    /// Returns the points of a tree.
     pub fn points_of(&self, tree: usize) -> Vec<DVec3> {
         self.owned().filter(|(_, owner)| *owner == Some(tree)).map(|(p, _)| p).collect()
+    }
+
+    /// Classes of the points of a tree in the file; empty, or one for each point.
+    pub fn classes_of(&self, tree: usize) -> Vec<PointClass> {
+        let rows = self.classes.iter().zip(&self.owner);
+        rows.filter(|(_, owner)| **owner as usize == tree).map(|(class, _)| *class).collect()
     }
 
     /// The wood of a tree, as [`find_tree`](crate::find_tree) finds it in the tree's own points over the ground of the plot.
@@ -144,14 +157,15 @@ impl Plot {
         report: &mut Report,
     ) -> Result<FoundTree, ScanTreeError> {
         let Some(own) = self.trees.get(tree) else { return Err(ScanTreeError::NoStem) };
-        let scene = Scene::of_tree(self.points_of(tree), self.ground.clone())?;
+        let scene = Scene::of_tree(self.points_of(tree), self.classes_of(tree), self.ground.clone())?;
         let spec = TreeScanSpec { at: Some(own.place), ..spec.clone() };
         scene.tree(&spec, run, report)
     }
 }
 
-/// How trunks are followed up: in steps of so many metres, within so many radii of where the axis goes, while the radius is between
-/// these shares of the one before; after so many steps without a circle it ends.
+/// Rules for following a trunk upwards: steps of `step_m` metres, points within `reach` radii of the expected axis, a
+/// radius between the shares `ratio` of the radius below, and circles that are `covered` by points; it ends after
+/// `missed` steps without a circle.
 struct Following {
     step_m: f64,
     reach: f64,
@@ -163,7 +177,7 @@ struct Following {
 const FOLLOWING: Following =
     Following { step_m: 0.2, reach: 1.6, ratio: [0.6, 1.15], covered: 0.3, missed: 3 };
 
-/// Adds to the cubes of trunks those above, as far as the trunks are round.
+/// Extends the cubes of trunks upwards, as far as the trunks are round.
 fn follow(
     points: &[DVec3],
     ways: &Ways,
@@ -178,7 +192,7 @@ fn follow(
         run.cancel.check()?;
         let top = |c: &&u32| ways.means[**c as usize].y;
         let Some(&highest) = trunk.cubes.iter().max_by(|a, b| top(a).total_cmp(&top(b))) else { continue };
-        // Leaning from the foot to the highest slice.
+        // The lean from the foot to the highest slice.
         let high = ways.means[highest as usize].y;
         let slice =
             trunk.cubes.iter().map(|&c| ways.means[c as usize]).filter(|m| high - m.y < FOLLOWING.step_m);
@@ -220,7 +234,7 @@ fn follow(
     Ok(())
 }
 
-/// Gives each cube to a trunk, or to undergrowth, whose number is that of the trunks.
+/// Assigns each cube to a trunk, or to undergrowth, whose number is that of the trunks.
 fn share(
     ways: &mut Ways,
     site: &Site<'_>,
@@ -257,7 +271,7 @@ fn share(
         let foot = foot.min_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
         begin(ways, c, foot.unwrap_or(trunks.len()));
     }
-    // What a trunk or the undergrowth begins with stays its own: no way is shorter than none.
+    // A trunk or the undergrowth keeps its first cubes: no path is shorter than 0.
     ways.spread(&front, |_| true, run.cancel)?;
     let (piece, sizes) = ways.pieces(2, |_| true, run.cancel)?;
     let piece: Vec<u32> = piece.iter().map(|&p| if sizes[p as usize] >= 4 { p } else { NONE }).collect();
@@ -265,7 +279,7 @@ fn share(
     Ok(())
 }
 
-/// The sides of the box around all points, seen from above.
+/// Returns the corners of the box around all points.
 fn edges(points: &[DVec3]) -> [DVec3; 2] {
     let sound = points.iter().filter(|p| p.abs().max_element() <= 1e9);
     let (low, high) = sound.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));

@@ -1,7 +1,7 @@
 //! Radii of axes: circles where there are points, the pipe model where there are few.
 //!
-//! Along an axis the logarithm of the radius is that of the pipe model plus an offset that wanders slowly. Circles are
-//! measurements of it with an error of their own; a smoother (Rauch, Tung and Striebel 1965) weighs both.
+//! Along an axis the logarithm of the radius is that of the pipe model plus an offset that drifts slowly. Circles are
+//! measurements of it, each with an error; a smoother (Rauch, Tung and Striebel 1965) weighs both.
 
 use base::{Cancelled, Draw, Run, Seed, map_indexed, ops};
 use glam::{DVec2, DVec3};
@@ -10,28 +10,29 @@ use crate::circle::{Circle, fit_circle};
 use crate::levels::Rings;
 use crate::ways::Ways;
 
-/// Points of a cross-section that are looked at.
+/// Most points of a cross-section that are used.
 const MOST: usize = 400;
-/// Circles with a greater error of the logarithm, or a shorter arc, tell nothing.
+/// A circle with a greater error of the logarithm is useless.
 const VAGUE: f64 = 0.5;
+/// A circle with points on a smaller share of its circumference is useless.
 const ARC: f64 = 0.3;
-/// Nor do circles with a greater share of the points inside: leaves and twigs fill them.
+/// A circle with a greater share of the points inside is useless: leaves and twigs fill it.
 const HOLLOW: f64 = 0.08;
-/// Axes measured in one job.
+/// Number of axes measured in one job.
 const GROUP: usize = 32;
 
-/// What was measured at a ring.
+/// Measurement at a ring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measured {
     pub(crate) radius: f64,
     /// Standard error of the logarithm of the radius.
     pub(crate) error: f64,
-    /// Where the middle should be.
+    /// Centre of the circle.
     pub(crate) middle: DVec3,
     pub(crate) covered: f64,
 }
 
-/// Circles at all rings of all axes, `None` where there is none.
+/// Measures circles at all rings of all axes, `None` for rings without one.
 pub(crate) fn measure(
     points: &[DVec3],
     ways: &Ways,
@@ -61,7 +62,7 @@ fn along(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32], noise: f64) 
     (0..run.len())
         .map(|i| {
             let ring = &rings.rings[run[i] as usize];
-            // A direction over as long a piece as it is thick.
+            // The direction is taken over a piece as long as it is thick.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few rings")]
             let reach = (1.5 * ring.spread / rings.band).ceil().clamp(1.0, 8.0) as usize + 1;
             let (a, b) = (i.saturating_sub(reach), (i + reach).min(run.len() - 1));
@@ -82,13 +83,13 @@ fn along(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32], noise: f64) 
             let far = flat.iter().map(|p| p.length()).fold(0.0, f64::max);
             let mut stream = Seed::new(u64::from(run[i])).stream(Draw::Sampling);
             let circle = fit_circle(&flat, noise, 1.5 * far, &mut stream)?;
-            // A ring whose points scatter by much more or less than its circle is wide has another's points in it.
+            // If the scatter of a ring's points does not match its circle, some are of another ring.
             let flat = 0.29 * rings.band;
             let wide = (ring.spread * ring.spread - flat * flat).max(0.0).sqrt().max(0.2 * ring.spread);
             let ratio = circle.radius / wide;
             let odd = if (0.6..1.6).contains(&ratio) { 0.0 } else { 0.3 * ops::ln(ratio).abs() };
             let error = error_of(&circle, noise) + odd;
-            // What tells no more than the model does is mostly of twigs side by side, and too wide.
+            // A circle that is less certain than the model is mostly of twigs next to one another, and too wide.
             if error > VAGUE || circle.covered < ARC || circle.inside > HOLLOW {
                 return None;
             }
@@ -98,32 +99,32 @@ fn along(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32], noise: f64) 
         .collect()
 }
 
-/// Standard error of the logarithm of a circle's radius: scatter, arcs that are short, points that lie elsewhere.
+/// Returns the standard error of the logarithm of a circle's radius, from scatter, short arcs, and points elsewhere.
 fn error_of(c: &Circle, noise: f64) -> f64 {
     let scatter = c.rms / (c.radius * (c.own as f64 / 3.0).sqrt());
-    // An arc of a quarter tells the radius to a third, half a circle to a tenth.
+    // A quarter arc gives the radius to a third, half a circle to a tenth.
     let arc = 0.8 * (1.0 - c.covered) * (1.0 - c.covered) * (1.0 - c.covered);
-    // What beam and noise make of a thin branch.
+    // Beam width and noise blur thin branches.
     let blur = 0.5 * noise / c.radius;
     let others = 0.6 * (1.0 - c.share);
     let rough = 0.5 * c.rms / c.radius;
     (0.02 * 0.02 + scatter * scatter + arc * arc + blur * blur + others * others + rough * rough).sqrt()
 }
 
-/// The largest loads that the pipe model is fitted to at first: down to this share.
+/// The first fit of the pipe model uses loads down to the greatest one divided by this.
 const OCTAVES: f64 = 16.0;
 
-/// Slopes b of the pipe model that a fit may have: exponents of 1.25 to 4.
+/// Least and greatest slope b of a fitted pipe model: exponents of 4 and 1.25.
 const SLOPES: [f64; 2] = [0.25, 0.8];
 
-/// Where the exponent of the pipe model comes from.
+/// Source of the exponent of the pipe model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PipeSource {
     /// Fitted to circles.
     Fitted,
-    /// The fit ended on a bound of what is looked at, 1.25 or 4.
+    /// The fit ended on a bound, 1.25 or 4.
     OnBound,
-    /// Too few circles are sound: that of other trees.
+    /// Too few circles are sound: the exponent is that of other trees.
     #[default]
     Default,
 }
@@ -138,33 +139,33 @@ pub(crate) struct Pipes {
     pub(crate) b: f64,
     /// Scatter of circles about it.
     pub(crate) scatter: f64,
-    /// Circles that it was fitted to.
+    /// Number of circles to which it was fitted.
     pub(crate) count: usize,
 }
 
 impl Pipes {
-    /// From loads (metres of wood above) and what was measured. Wood that would be thinner than `least` is not looked at:
-    /// there the circles are of what lies side by side. Also the load from which on it was.
+    /// Fits the model to loads (metres of wood above) and circles. It ignores wood that would be thinner than
+    /// `least`, because circles there are of twigs next to one another. Also returns the least load that it used.
     pub(crate) fn fit(rows: &[(f64, Measured)], least: f64) -> (Self, f64) {
         let most = rows.iter().map(|r| r.0).fold(0.0, f64::max);
         let mut from = most / OCTAVES;
         let above = |from: f64| rows.iter().copied().filter(|r| r.0 >= from).collect::<Vec<_>>();
-        let mut fit = Self::of(&above(from));
+        let mut fit = Self::fit_all(&above(from));
         for _ in 0..4 {
             from = ops::exp((ops::ln(least.max(1e-6)) - fit.a) / fit.b).min(most / OCTAVES);
-            fit = Self::of(&above(from));
+            fit = Self::fit_all(&above(from));
         }
         (fit, from)
     }
 
-    /// Of all rows; loads of all sizes count alike.
-    fn of(rows: &[(f64, Measured)]) -> Self {
+    /// Fits the model to all rows; each octave of loads has the same weight.
+    fn fit_all(rows: &[(f64, Measured)]) -> Self {
         let sound: Vec<(f64, f64, f64)> = rows
             .iter()
             .filter(|(load, m)| *load > 0.0 && m.error < 0.25 && m.covered > 0.4)
             .map(|(load, m)| (ops::ln(*load), ops::ln(m.radius), m.error))
             .collect();
-        // Without circles: what is usual for trees.
+        // Without circles: the usual model of trees.
         let source = PipeSource::Default;
         let usual = Self { source, a: ops::ln(0.006), b: 0.42, scatter: 0.4, count: sound.len() };
         if sound.len() < 8 {
@@ -206,7 +207,7 @@ impl Pipes {
         fit
     }
 
-    /// Of many lines through two circles that which half of the circles are nearest to.
+    /// Returns the line with the least scatter among many through two circles.
     fn start(sound: &[(f64, f64, f64)], weight: &dyn Fn(f64) -> f64, usual: Self) -> Self {
         let mut stream = Seed::new(sound.len() as u64).stream(Draw::Sampling);
         let few: Vec<(f64, f64, f64)> = sound.iter().copied().step_by(sound.len() / 2000 + 1).collect();
@@ -227,7 +228,7 @@ impl Pipes {
         if best.scatter.is_finite() { best } else { usual }
     }
 
-    /// Scatter about the line: 1.48 weighted medians are a standard deviation.
+    /// Returns the scatter about the line: 1.48 weighted medians are a standard deviation.
     fn spread(&self, sound: &[(f64, f64, f64)], weight: &dyn Fn(f64) -> f64) -> f64 {
         let mut off: Vec<(f64, f64)> = sound
             .iter()
@@ -243,7 +244,7 @@ impl Pipes {
         (1.48 * median.map_or(0.3, |m| m.0)).clamp(0.05, 0.6)
     }
 
-    /// The logarithm of the radius below so much wood, metres.
+    /// Returns the logarithm of the radius below `load` metres of wood.
     fn log_radius(&self, load: f64) -> f64 {
         self.a + self.b * ops::ln(load.max(1e-6))
     }
@@ -258,7 +259,7 @@ pub(crate) struct Smoothed {
     pub(crate) errors: Vec<f64>,
 }
 
-/// Radii along one axis. `below`: the offset of its bearer from the pipe model.
+/// Computes the radii along one axis. `below`: the offset of its bearer from the pipe model.
 pub(crate) fn smooth(
     loads: &[f64],
     measured: &[Option<Measured>],
@@ -274,14 +275,15 @@ pub(crate) fn smooth(
     let (mut x, mut v) = (0.5 * below.unwrap_or(0.0), start);
     for i in 0..n {
         if i > 0 {
-            // It wanders, and what nothing supports goes back to the model.
+            // The offset drifts: its variance grows from ring to ring.
             v += wander;
         }
         (ahead[i], ahead_v[i]) = (x, v);
         if let Some(m) = &measured[i] {
             let off = ops::ln(m.radius) - pipes.log_radius(loads[i]) - x;
             let mut e2 = m.error * m.error;
-            // Beyond three standard errors a circle is of something else, beyond two if it is wider: neighbours widen.
+            // A circle beyond three standard errors is of something else, or beyond two if it is wider, because
+            // neighbouring twigs widen circles.
             let far = off * off / (if off > 0.0 { 4.0 } else { 9.0 } * (e2 + v));
             if far > 1.0 {
                 e2 *= far * far;
@@ -303,7 +305,7 @@ pub(crate) fn smooth(
     Smoothed { radii, offsets: mean, errors: variance.into_iter().map(|v| v.max(0.0).sqrt()).collect() }
 }
 
-/// The nearest sequence that never rises (pool adjacent violators).
+/// Replaces the values by the nearest sequence that never rises (pool adjacent violators).
 fn falling(values: &mut [f64]) {
     let mut blocks: Vec<(f64, usize)> = vec![];
     for &v in values.iter() {
@@ -323,7 +325,7 @@ fn falling(values: &mut [f64]) {
 mod tests {
     use super::*;
 
-    fn at(radius: f64, error: f64) -> Measured {
+    fn measured_circle(radius: f64, error: f64) -> Measured {
         Measured { radius, error, middle: DVec3::ZERO, covered: 1.0 }
     }
 
@@ -333,7 +335,7 @@ mod tests {
             .map(|k| {
                 let load = 0.05 * f64::from(k * k);
                 let r = 0.01 * ops::powf(load, 0.45) * if k % 17 == 0 { 2.5 } else { 1.0 };
-                (load, at(r, 0.05))
+                (load, measured_circle(r, 0.05))
             })
             .collect();
         let (p, _) = Pipes::fit(&rows, 0.001);
@@ -346,8 +348,8 @@ mod tests {
         let pipes = Pipes { source, a: ops::ln(0.01), b: 0.5, scatter: 0.2, count: 100 };
         let loads: Vec<f64> = (1..=20).rev().map(f64::from).collect();
         let mut measured: Vec<Option<Measured>> =
-            loads.iter().map(|l| Some(at(1.2 * ops::exp(pipes.log_radius(*l)), 0.05))).collect();
-        measured[4] = Some(at(1.0, 0.05));
+            loads.iter().map(|l| Some(measured_circle(1.2 * ops::exp(pipes.log_radius(*l)), 0.05))).collect();
+        measured[4] = Some(measured_circle(1.0, 0.05));
         measured[10..].fill(None);
         let r = smooth(&loads, &measured, &pipes, None, 0.03).radii;
         for (r, l) in r.iter().zip(&loads).take(10) {

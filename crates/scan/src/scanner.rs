@@ -1,4 +1,4 @@
-//! Meshes -> the cloud that a terrestrial laser scanner would make of them, for trials with a known truth.
+//! Meshes -> the cloud that a terrestrial laser scanner would measure, for trials with a known truth.
 
 use base::{Draw, Seed, ops};
 use glam::DVec3;
@@ -8,19 +8,20 @@ use plant::{AxisId, Plant};
 /// A scanner at one position. Lengths in metres, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScannerSpec {
-    /// Where it stands.
+    /// Position of the scanner.
     pub position: DVec3,
-    /// Between neighbouring beams. Default 0.63e-3: 6.3 mm at 10 m.
+    /// Angle between neighbouring beams. Default 0.63e-3: 6.3 mm at 10 m.
     pub step: f64,
-    /// Width of a beam's footprint, as an angle, on top of [`aperture_m`](Self::aperture_m). Default 0.3e-3.
+    /// Width of a beam's footprint, as an angle, in addition to [`aperture_m`](Self::aperture_m). Default 0.3e-3.
     pub divergence: f64,
     /// Width of the beam where it leaves the scanner. Default 0.003.
     pub aperture_m: f64,
     /// Standard deviation of the range. Default 0.002.
     pub noise_m: f64,
-    /// Surfaces nearer to one another along a beam are one echo, at the mean of their ranges: a mixed pixel. Default 0.25.
+    /// Surfaces nearer to one another along a beam are one echo, at the mean of their ranges: a mixed pixel. Default
+    /// 0.25.
     pub pulse_m: f64,
-    /// Farther surfaces are not seen. Default 60.
+    /// Greatest range; farther surfaces are not measured. Default 60.
     pub range_m: f64,
 }
 
@@ -38,15 +39,15 @@ impl Default for ScannerSpec {
     }
 }
 
-/// Rays that a beam's footprint is sampled by, along one side.
+/// Number of rays along one side of a beam's footprint.
 const ACROSS: usize = 3;
-/// Rays that are looked along at a time: a band of elevations.
+/// Number of rays that are traced at a time: a band of elevations.
 const BAND: usize = 64;
 
-/// What a scanner sees of a model: the points, and for each the number of its part.
+/// Scans a model: returns the points, and for each the number of its part.
 ///
-/// A beam is 9 rays over its footprint. Rays within [`pulse_m`](ScannerSpec::pulse_m) of its nearest hit make one echo
-/// if they are three or more, else the next ones do. Cost: linear in beams and in the pixels of all triangles.
+/// A beam is 9 rays over its footprint. Rays within [`pulse_m`](ScannerSpec::pulse_m) of its nearest hit form one
+/// echo if they are three or more, else the next ones do. Cost: linear in beams and in the pixels of all triangles.
 pub fn scan(model: &Model, spec: &ScannerSpec, seed: Seed) -> (Vec<DVec3>, Vec<u32>) {
     let mut s = seed.stream(Draw::Sampling);
     let boxes = facets(model, spec);
@@ -67,7 +68,8 @@ pub fn scan(model: &Model, spec: &ScannerSpec, seed: Seed) -> (Vec<DVec3>, Vec<u
     let (mut points, mut parts) = (vec![], vec![]);
     let fine = spec.step / ACROSS as f64;
     let wide = columns * ACROSS;
-    // Footprints are narrower or wider than the step: the 3 x 3 rays of a beam lie over its footprint at the usual range.
+    // The 3 x 3 rays of a beam lie over its footprint at the mean range, which may be narrower or wider than the
+    // step.
     let mean = boxes.iter().map(|f| f.corner.length()).sum::<f64>() / boxes.len() as f64;
     let shrink = ((spec.divergence + spec.aperture_m / mean.max(0.1)) / spec.step).min(1.0);
     let turn = |origin: f64, i: usize| {
@@ -106,9 +108,10 @@ pub fn scan(model: &Model, spec: &ScannerSpec, seed: Seed) -> (Vec<DVec3>, Vec<u
     (points, parts)
 }
 
-/// The wood of a plant as round as it is, for trials: rings of 24 places whose polygon has the area of their circle.
+/// Returns the wood of a plant with truly round sections, for trials: rings of 24 places whose polygon has the area
+/// of their circle.
 ///
-/// Meshes that are made to be seen have fewer sides, inside the circle: a scanner would find them thinner.
+/// Meshes for viewing have fewer sides, inside the circle: a scanner would find them thinner.
 pub fn wood_mesh(plant: &Plant) -> TriMesh {
     const SIDES: u32 = 24;
     let mut mesh = TriMesh::default();
@@ -140,7 +143,8 @@ pub fn wood_mesh(plant: &Plant) -> TriMesh {
     mesh
 }
 
-/// The echo of a beam: mean range of what is near the nearest hit that is strong enough, and the part most rays met.
+/// Returns the echo of a beam: mean range of the rays near the nearest hit that is strong enough, and the part that
+/// most of them met.
 fn echo(spec: &ScannerSpec, ray: impl Fn(usize) -> (f32, u32)) -> Option<(f64, u32)> {
     let mut hits: Vec<(f32, u32)> =
         (0..ACROSS * ACROSS).map(ray).filter(|h| f64::from(h.0) <= spec.range_m).collect();
@@ -169,7 +173,7 @@ const fn index(x: f64) -> usize {
 /// Sine and cosine.
 type Turn = (f64, f64);
 
-/// A triangle as the scanner sees it.
+/// A triangle in the scanner's view.
 struct Facet {
     corner: DVec3,
     edges: [DVec3; 2],
@@ -180,7 +184,7 @@ struct Facet {
 
 fn facets(model: &Model, spec: &ScannerSpec) -> Vec<Facet> {
     let parts = (0_u32..).zip(&model.parts);
-    parts.flat_map(|(k, part)| triangles(&part.mesh).filter_map(move |t| Facet::of(t, spec, k))).collect()
+    parts.flat_map(|(k, part)| triangles(&part.mesh).filter_map(move |t| Facet::new(t, spec, k))).collect()
 }
 
 fn triangles(mesh: &TriMesh) -> impl Iterator<Item = [DVec3; 3]> + '_ {
@@ -189,8 +193,8 @@ fn triangles(mesh: &TriMesh) -> impl Iterator<Item = [DVec3; 3]> + '_ {
 }
 
 impl Facet {
-    /// None behind the seam of azimuths: a triangle that spans more than a quarter of a turn.
-    fn of(corners: [DVec3; 3], spec: &ScannerSpec, part: u32) -> Option<Self> {
+    /// Returns none at the seam of azimuths: a triangle that spans more than a quarter of a turn.
+    fn new(corners: [DVec3; 3], spec: &ScannerSpec, part: u32) -> Option<Self> {
         let c = corners.map(|p| p - spec.position);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in c {
@@ -205,7 +209,7 @@ impl Facet {
         seen.then(|| Self { corner: c[0], edges: [c[1] - c[0], c[2] - c[0]], low, high, part })
     }
 
-    /// Fills the rays of a band that meet it (Moeller and Trumbore 1997).
+    /// Sets the rays of a band that meet it (Moeller and Trumbore 1997).
     fn draw(&self, origin: [f64; 2], fine: f64, (across, up): (&[Turn], &[Turn]), depth: &mut [(f32, u32)]) {
         let (wide, tall) = (across.len(), up.len());
         let first = |k: usize| index(((self.low[k] - origin[k]) / fine).max(0.0)).saturating_sub(ACROSS);

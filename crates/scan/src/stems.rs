@@ -1,4 +1,4 @@
-//! What stands on the ground: the tree, other trees, people, walls.
+//! Things on the ground: the tree, other trees, people, walls.
 
 use base::{CancelToken, Cancelled, Report};
 use glam::DVec3;
@@ -9,27 +9,27 @@ use crate::levels::Rings;
 use crate::wanted::{ScanTally, TreeScanSpec};
 use crate::ways::{Bridges, NONE, Ways};
 
-/// A trunk that was seen.
+/// A detected trunk.
 #[derive(Clone, Debug)]
 pub(crate) struct Trunk {
-    /// Its middle in its lowest slice.
+    /// Its centre in its lowest slice.
     pub(crate) middle: DVec3,
     pub(crate) radius: f64,
     /// Its cubes in all slices.
     pub(crate) cubes: Vec<u32>,
 }
 
-/// Where a tree stands: heights over the ground.
+/// Ground of a tree, for heights over it.
 pub(crate) struct Site<'a> {
     ground: Option<&'a Ground>,
     lowest: f64,
     pub(crate) height: f64,
-    /// What touches the ground has points below this height.
+    /// Things that touch the ground have points below this height, metres.
     contact: f64,
 }
 
 impl<'a> Site<'a> {
-    pub(crate) fn of(above: &[DVec3], ground: Option<&'a Ground>, height: f64, cell: f64) -> Self {
+    pub(crate) fn new(above: &[DVec3], ground: Option<&'a Ground>, height: f64, cell: f64) -> Self {
         let lowest = lowest(above);
         let thick = ground.map_or(0.0, |g| g.thickness_m.max(0.02));
         let contact = thick + (0.02 * height).clamp(3.0 * cell, 0.3_f64.max(3.0 * cell));
@@ -40,7 +40,7 @@ impl<'a> Site<'a> {
         p.y - self.level(p)
     }
 
-    /// Whether a point is low enough to touch the ground.
+    /// Returns whether a point is low enough to touch the ground.
     pub(crate) fn is_low(&self, p: DVec3) -> bool {
         self.over(p) < self.contact
     }
@@ -50,17 +50,17 @@ impl<'a> Site<'a> {
     }
 }
 
-/// The lowest point but for a few strays.
+/// Returns the lowest point, ignoring a few strays.
 fn lowest(points: &[DVec3]) -> f64 {
     let mut heights: Vec<f64> = points.iter().step_by(points.len() / 100_000 + 1).map(|p| p.y).collect();
     base::sort_numbers(&mut heights);
     heights[heights.len() / 2000]
 }
 
-/// Roots and the foot of a stem that spreads into them lie below this share of the height.
+/// Roots and the root collar of a stem lie below this share of the height.
 const ROOTED: f64 = 0.1;
 
-/// One thing that touches the ground.
+/// A thing that touches the ground.
 #[derive(Clone, Debug)]
 struct Contact {
     cubes: Vec<u32>,
@@ -68,19 +68,19 @@ struct Contact {
     /// Half of the longer side of its box, seen from above.
     half: f64,
     piece: u32,
-    /// A trunk goes up from here.
+    /// A trunk rises from here.
     is_trunk: bool,
 }
 
-/// A contact this far from a trunk, beyond its bark, is where that trunk stands, metres.
+/// A trunk stands on a contact that is within this distance of it, beyond its bark, metres.
 const FOOT_OF_TRUNK: f64 = 0.3;
-/// Trunks of one piece that are farther apart are two trees, metres.
+/// Trunks of one piece that are farther apart than this are two trees, metres.
 const TWO_TREES: f64 = 1.0;
 
-/// A piece of so many cubes is no dust.
+/// Least number of cubes of a piece that is not dust.
 const LARGE: u32 = 40;
 
-/// What stands on the ground, the chosen tree first.
+/// Things on the ground, with the chosen tree first.
 pub(crate) struct Stems {
     piece: Vec<u32>,
     sizes: Vec<u32>,
@@ -107,7 +107,7 @@ impl Stems {
             contacts = touching(ways, site, &piece, (0.5 * under, under), cancel)?;
         }
         stand_on(trunks, &piece, &solid, &mut contacts);
-        // How high each piece reaches, and which contact a loose piece above belongs to: the nearest below it.
+        // Greatest height of each piece; after that, loose pieces count for the nearest contact.
         let mut top = vec![0.0_f64; sizes.len()];
         for (c, &p) in piece.iter().enumerate() {
             top[p as usize] = top[p as usize].max(site.over(ways.means[c]));
@@ -115,7 +115,7 @@ impl Stems {
         let mut score: Vec<f64> = contacts.iter().map(|k| f64::from(sizes[k.piece as usize])).collect();
         add_loose(ways, &piece, &sizes, &contacts, &mut score, &solid);
         for (s, k) in score.iter_mut().zip(&contacts) {
-            // What stays low is no tree; of feet of one piece the thicker one.
+            // A low piece is not a tree; among the feet of one piece, the thicker wins.
             *s *= (top[k.piece as usize] / site.height).min(1.0) * (0.5 + k.half);
             if !solid(k) {
                 *s = 0.0;
@@ -127,7 +127,7 @@ impl Stems {
         };
         let best = match spec.at {
             Some(at) if trunk_there(at).is_some() => {
-                // The stem that is nearest, not the nearest weed.
+                // The nearest stem, not the nearest weed.
                 let stands =
                     trunk_there(at).map(|t| (0..contacts.len()).filter(|&i| stands_on(t, &contacts[i])));
                 stands.into_iter().flatten().max_by(|&a, &b| score[a].total_cmp(&score[b]).then(b.cmp(&a)))
@@ -144,7 +144,7 @@ impl Stems {
                     let m = contacts[near].middle;
                     return Err(ScanTreeError::NotThere([x, z], spec.at_within_m, [m.x, m.z]));
                 }
-                // Of those about as near the best.
+                // The best of those that are about as near.
                 (0..contacts.len())
                     .filter(|&i| score[i] > 0.0 && flat(&contacts[i]) < is + 0.3)
                     .max_by(|&a, &b| score[a].total_cmp(&score[b]))
@@ -161,7 +161,7 @@ impl Stems {
             if i == best || (shrub && k.half > 0.4 * main.half) {
                 feet.push(k);
             } else if same {
-                // A twig that hangs to the ground belongs to the tree; a stem as thick is another's.
+                // A twig that hangs to the ground belongs to the tree; a stem as thick is another tree's.
                 let is_stem = k.half > 0.5 * main.half && solid(&k) && away > 1.5;
                 if is_stem || (k.is_trunk && away > TWO_TREES) {
                     others.push(k);
@@ -173,7 +173,7 @@ impl Stems {
         Ok(Self { piece, sizes, feet, others })
     }
 
-    /// Gives every cube to what it hangs together with: plant 0 is the tree. Gaps up to `gap` are bridged.
+    /// Assigns every cube to the thing with which it is connected: plant 0 is the tree. Gaps up to `gap` are bridged.
     pub(crate) fn claim(
         &self,
         site: &Site<'_>,
@@ -183,7 +183,7 @@ impl Stems {
     ) -> Result<Bridges, Cancelled> {
         let mut front = vec![];
         for (plant, k) in self.feet.iter().map(|k| (0, k)).chain((1..).zip(&self.others)) {
-            // From the lowest cubes up.
+            // Start from the lowest cubes.
             let over = |c: &u32| site.over(ways.means[*c as usize]);
             let low = k.cubes.iter().map(over).fold(f64::INFINITY, f64::min) + 2.0 * ways.voxels.cell();
             let seeds: Vec<u32> = k.cubes.iter().copied().filter(|c| over(c) < low).collect();
@@ -197,7 +197,7 @@ impl Stems {
         self.bridge(ways, gap, cancel)
     }
 
-    /// Bridges gaps up to `gap`. Dust stays where it is.
+    /// Bridges gaps up to `gap`, but not to dust.
     fn bridge(&self, ways: &mut Ways, gap: f64, cancel: &CancelToken) -> Result<Bridges, Cancelled> {
         let sizes = &self.sizes;
         let piece: Vec<u32> =
@@ -205,7 +205,7 @@ impl Stems {
         ways.bridge(gap, &piece, |c| piece[c] != NONE, cancel)
     }
 
-    /// The points that are the tree's, and those of large pieces that hang together with nothing that stands.
+    /// Returns the number of points of the tree, and of large pieces that are connected with nothing on the ground.
     pub(crate) fn loose(&self, ways: &Ways) -> [usize; 2] {
         let mut counts = [0; 2];
         for c in 0..ways.len() {
@@ -219,7 +219,7 @@ impl Stems {
         counts
     }
 
-    /// Bridges a wider gap to large pieces, then usual ones beyond it: the widest that was bridged.
+    /// Bridges a wider gap to large pieces, then usual ones beyond it; returns the count and the widest gap.
     pub(crate) fn reach_over(
         &self,
         ways: &mut Ways,
@@ -233,7 +233,8 @@ impl Stems {
         Ok(Bridges { count: over.count + more.count, longest: over.longest })
     }
 
-    /// How far the nearest large piece that hangs together with nothing is from the tree; none without one.
+    /// Returns the distance from the tree to the nearest large piece that is connected with nothing; none without
+    /// one.
     pub(crate) fn next_gap(&self, ways: &Ways) -> Option<f64> {
         let places: Vec<DVec3> =
             (0..ways.len()).filter(|&c| ways.plant[c] == 0).map(|c| ways.means[c]).collect();
@@ -272,7 +273,7 @@ impl Stems {
         }
     }
 
-    /// Where the tree stands: below its lowest ring, on the ground.
+    /// Returns the foot of the tree: below its lowest ring, on the ground.
     pub(crate) fn foot(&self, site: &Site<'_>, rings: &Rings) -> DVec3 {
         let feet = rings.rings.iter().filter(|r| r.below == NONE && r.alive);
         let stem = feet.max_by(|a, b| a.reach.total_cmp(&b.reach));
@@ -281,7 +282,8 @@ impl Stems {
     }
 }
 
-/// What touches the ground, up to a height over it; its middle and width are those of what is above another one.
+/// Returns the things that touch the ground, up to a height over it; their centre and width are measured above
+/// another height.
 fn touching(
     ways: &Ways,
     site: &Site<'_>,
@@ -314,12 +316,13 @@ fn touching(
     Ok(contacts)
 }
 
-/// Whether a contact is where a trunk stands.
+/// Returns whether a trunk stands on a contact.
 fn stands_on(trunk: &Trunk, contact: &Contact) -> bool {
     (contact.middle - trunk.middle).with_y(0.0).length() < trunk.radius + FOOT_OF_TRUNK
 }
 
-/// Marks the contacts that trunks stand on. A trunk whose foot is lost in what grows around it is a contact itself.
+/// Marks the contacts on which trunks stand. A trunk whose foot is hidden by the plants around it becomes a contact
+/// itself.
 fn stand_on(trunks: &[Trunk], piece: &[u32], solid: &dyn Fn(&Contact) -> bool, contacts: &mut Vec<Contact>) {
     for trunk in trunks {
         let mut is_seen = false;
@@ -336,7 +339,7 @@ fn stand_on(trunks: &[Trunk], piece: &[u32], solid: &dyn Fn(&Contact) -> bool, c
     }
 }
 
-/// Loose pieces count for the contact that is nearest seen from above.
+/// Adds loose pieces to the score of the contact that is nearest in plan.
 fn add_loose(
     ways: &Ways,
     piece: &[u32],

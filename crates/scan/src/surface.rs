@@ -1,27 +1,27 @@
-//! How far the wood of two plants is apart.
+//! Distance between the wood of two plants.
 
 use base::ops;
 use geom::KdTree;
 use glam::DVec3;
 use plant::{AxisId, Plant};
 
-/// Distances of the surface of one plant's wood from another's, metres.
+/// Distances from the surface of one plant's wood to that of another, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gap {
-    /// Mean.
+    /// Mean distance.
     pub mean: f64,
-    /// Half is nearer.
+    /// Median distance.
     pub median: f64,
-    /// 95 of 100 are nearer.
+    /// 95 % quantile of the distances.
     pub p95: f64,
-    /// Farthest.
+    /// Greatest distance.
     pub max: f64,
 }
 
-/// From the surface of the wood of `from` to that of `to`, at places about `step` metres apart; none where either has no
-/// wood. Only wood of at least `least_radius_m` of `from` counts.
+/// Measures from the surface of the wood of `from` to that of `to`, at places about `step` metres apart; none if
+/// either has no wood. Only wood of `from` with a radius of at least `least_radius_m` counts.
 ///
-/// Each distance is that from the plane of the nearest place of the other. Cost: n log n in places.
+/// Each distance is that to the tangent plane at the nearest place of the other surface. Cost: n log n in places.
 pub fn wood_gap(from: &Plant, to: &Plant, step: f64, least_radius_m: f64) -> Option<Gap> {
     let (a, _) = places(from, step, least_radius_m);
     let (b, normals) = places(to, 0.7 * step, 0.0);
@@ -34,7 +34,8 @@ pub fn wood_gap(from: &Plant, to: &Plant, step: f64, least_radius_m: f64) -> Opt
         .filter_map(|p| {
             let k = tree.nearest(*p, f64::INFINITY)?;
             let d = *p - b[k];
-            // Beside a place the surface goes on; farther off than that the place itself counts.
+            // The surface continues around a place as its plane; farther away, the distance to the place itself
+            // counts.
             let flat = (d - normals[k] * d.dot(normals[k])).length();
             Some(if flat < step { d.dot(normals[k]).abs() } else { d.length() })
         })
@@ -53,12 +54,12 @@ pub fn wood_gap(from: &Plant, to: &Plant, step: f64, least_radius_m: f64) -> Opt
     })
 }
 
-/// Places on the surface of wood about `step` metres apart.
+/// Returns places on the surface of wood, about `step` metres apart.
 pub(crate) fn surface_places(plant: &Plant, step: f64) -> Vec<DVec3> {
     places(plant, step, 0.0).0
 }
 
-/// Places on the surface of wood, with their normals.
+/// Returns places on the surface of wood, with their normals.
 fn places(plant: &Plant, step: f64, least: f64) -> (Vec<DVec3>, Vec<DVec3>) {
     let (mut points, mut normals) = (vec![], vec![]);
     for id in (0..plant.axes.len()).map(AxisId::new) {

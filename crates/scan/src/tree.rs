@@ -3,6 +3,7 @@
 use base::{Cancelled, Report, Run};
 use geom::Voxels;
 use glam::DVec3;
+use mesh::PointClass;
 use plant::{AxisKind, NodeId, Plant};
 
 use crate::ScanTreeError;
@@ -14,86 +15,101 @@ use crate::radii::{Measured, Pipes, Smoothed, measure, smooth};
 use crate::stems::{Site, Stems, Trunk};
 use crate::surface::surface_places;
 use crate::trunks::find_trunks;
-use crate::wanted::{ScanTally, TreeScanSpec};
+use crate::wanted::{ScanPoints, ScanTally, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 
-/// A tree that was found in a cloud.
+/// A tree found in a cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundTree {
     /// Its wood; it stands at the origin.
     pub plant: Plant,
-    /// Where it stands in the cloud.
+    /// Place of its foot in the cloud.
     pub foot: DVec3,
-    /// The ground, where there is one.
+    /// The ground, if there is one.
     pub ground: Option<Ground>,
-    /// What became of the points.
+    /// Counts of the points.
     pub tally: ScanTally,
-    /// Between which values its figures lie.
+    /// Intervals of its figures.
     pub intervals: Intervals,
-    /// Where other trunks stand that were seen, x and z in the cloud.
+    /// Places of other detected trunks, x and z in the cloud.
     pub other_stems: Vec<[f64; 2]>,
 }
 
-/// Least points of a tree.
+/// Least number of points of a tree.
 const FEWEST: usize = 200;
-/// Circles of fewer cubes across show no radius.
+/// Least diameter of a circle that shows a radius, in cubes.
 const RESOLVED: f64 = 1.0;
-/// A pipe model of a greater exponent is of leaves.
+/// A pipe model with a greater exponent is of leaves.
 const STEEP: f64 = 3.0;
-/// Higher is no tree, metres: the highest is 116.
+/// Greatest height of a tree, metres: the highest is 116.
 const HIGHEST: f64 = 130.0;
-/// Lower is no tree that a scanner resolves, metres: a cloud in metres that is read as one in mm.
+/// Least height of a tree that a scanner resolves, metres; lower is a cloud in metres that was read as millimetres.
 const LOWEST: f64 = 0.15;
-/// A cloud that is wider, metres, has fewer points above a square metre and shows no trunk is one from the air.
+/// A cloud wider than this in metres, with fewer points per square metre than this and without a trunk, was scanned
+/// from the air.
 const AIRBORNE: (f64, f64) = (15.0, 500.0);
-/// Where so much of a tree lies beyond a gap, gaps of so much of its height, and of so many metres, are bridged.
+/// If this share of a tree lies beyond a gap, gaps up to this share of its height, and up to this length in metres,
+/// are bridged.
 const LOOSE: (f64, f64, f64) = (0.3, 0.15, 2.0);
 
-/// Finds a tree in a cloud: ground and noise go, other things go, ways from the foot make the skeleton, circles and the
-/// pipe model its radii.
+/// Finds a tree in a cloud: removes the ground, noise and other things, derives the skeleton from paths from the
+/// foot, and the radii from circles and the pipe model.
 ///
 /// Guaranteed: a plant without faults, radii that fall along every axis and are at most those of the bearer; the same
-/// bits for any executor. Not guaranteed: twigs that are thinner than the points are apart. Cost: n log n; 5 million
-/// points take some tens of seconds.
+/// bits for any executor. Not guaranteed: twigs that are thinner than the spacing of the points. Cost: n log n; 5
+/// million points take some tens of seconds.
 ///
 /// # Errors
 /// [`ScanTreeError`].
-pub fn find_tree(
-    points: &[DVec3],
+pub fn find_tree<'a>(
+    points: impl Into<ScanPoints<'a>>,
     spec: &TreeScanSpec,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<FoundTree, ScanTreeError> {
-    Scene::read(points, run, report)?.tree(spec, run, report)
+    Scene::read(points.into(), run, report)?.tree(spec, run, report)
 }
 
-/// What stands on the ground.
+/// Things on the ground.
 pub(crate) struct Scene {
     /// The points above the ground.
     pub(crate) above: Vec<DVec3>,
+    /// Their classes in the file; empty, or one for each point.
+    pub(crate) classes: Vec<PointClass>,
     pub(crate) ground: Option<Ground>,
-    /// Of the highest point over the ground but for strays, metres.
+    /// Height of the highest point over the ground, ignoring strays, metres.
     pub(crate) height: f64,
-    /// Usable points, of the ground too.
+    /// Number of usable points, including the ground.
     pub(crate) points: usize,
 }
 
 impl Scene {
     /// Takes the ground away.
-    pub(crate) fn read(points: &[DVec3], run: &Run<'_>, report: &mut Report) -> Result<Self, ScanTreeError> {
-        let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() <= 1e9).collect();
+    pub(crate) fn read(
+        points: ScanPoints<'_>,
+        run: &Run<'_>,
+        report: &mut Report,
+    ) -> Result<Self, ScanTreeError> {
+        let is_usable = |p: &DVec3| p.abs().max_element() <= 1e9;
+        let all: Vec<DVec3> = points.places.iter().copied().filter(is_usable).collect();
+        let rows = points.places.iter().zip(points.classes);
+        let mut classes: Vec<PointClass> = rows.filter(|(p, _)| is_usable(p)).map(|(_, c)| *c).collect();
+        if points.classes.len() != points.places.len() {
+            classes.clear();
+        }
         if all.len() < FEWEST {
             return Err(ScanTreeError::TooFew(all.len(), FEWEST));
         }
         run.cancel.check()?;
-        let ground = Ground::find(&all);
+        let ground = ground_of(&all, &classes);
         run.cancel.check()?;
         let (low, high) =
             all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.y), b.max(p.y)));
         if high - low < LOWEST {
             return Err(ScanTreeError::TooSmall(high - low));
         }
-        let (above, height) = above_ground(&all, ground.as_ref());
+        let Above { points: above, classes: above_classes, height } =
+            Above::select(&all, &classes, ground.as_ref());
         if height > HIGHEST {
             return Err(ScanTreeError::TooLarge(height));
         }
@@ -101,21 +117,26 @@ impl Scene {
             return Err(ScanTreeError::TooFew(above.len(), FEWEST));
         }
         warn_of_ground(&all, ground.as_ref(), report);
-        Ok(Self { points: all.len(), above, ground, height })
+        tell_classes(&classes, report);
+        Ok(Self { points: all.len(), above, classes: above_classes, ground, height })
     }
 
     /// One tree's own points, over a ground that is known.
-    pub(crate) fn of_tree(above: Vec<DVec3>, ground: Option<Ground>) -> Result<Self, ScanTreeError> {
+    pub(crate) fn of_tree(
+        above: Vec<DVec3>,
+        classes: Vec<PointClass>,
+        ground: Option<Ground>,
+    ) -> Result<Self, ScanTreeError> {
         if above.len() < FEWEST {
             return Err(ScanTreeError::TooFew(above.len(), FEWEST));
         }
         let lowest = above.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let over = |p: &DVec3| p.y - ground.as_ref().map_or(lowest, |g| g.height(*p));
         let height = highest(above.iter().map(over), above.len());
-        Ok(Self { points: above.len(), above, ground, height })
+        Ok(Self { points: above.len(), above, classes, ground, height })
     }
 
-    /// Occupied cubes of what stands on the ground.
+    /// Returns the occupied cubes of the things on the ground.
     pub(crate) fn ways(&self, cell_m: Option<f64>, run: &Run<'_>) -> Result<Ways, Cancelled> {
         run.cancel.check()?;
         let cell = match cell_m {
@@ -126,10 +147,10 @@ impl Scene {
     }
 
     pub(crate) fn site(&self, ways: &Ways) -> Site<'_> {
-        Site::of(&self.above, self.ground.as_ref(), self.height, ways.voxels.cell())
+        Site::new(&self.above, self.ground.as_ref(), self.height, ways.voxels.cell())
     }
 
-    /// An error if this is a scan from the air.
+    /// Fails if this is a scan from the air.
     pub(crate) fn check_stems(&self, trunks: &[Trunk]) -> Result<(), ScanTreeError> {
         let (low, high) =
             self.above.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
@@ -142,7 +163,7 @@ impl Scene {
         Ok(())
     }
 
-    /// The tree of it, or the one that is wanted.
+    /// Finds its tree, or the requested one.
     pub(crate) fn tree(
         self,
         spec: &TreeScanSpec,
@@ -164,8 +185,11 @@ impl Scene {
         self.claim(&stems, &mut ways, spec, &mut tally, (run, report))?;
         let mine = |c: usize| ways.plant[c] == 0 && ways.way[c].is_finite();
         tally.scattered = foliage::scattered(&ways, mine, run.cancel)?;
-        let in_leaf = tally.scattered > foliage::SCATTERED;
-        let woody = if in_leaf { Some(foliage::wood(&ways, mine, run.cancel)?) } else { None };
+        let mut woody = foliage::labelled_wood(&ways, &self.classes, mine);
+        if woody.is_none() && tally.scattered > foliage::SCATTERED {
+            woody = Some(foliage::wood(&ways, mine, run.cancel)?);
+        }
+        let in_leaf = woody.as_ref().is_some_and(|wood| (0..ways.len()).any(|c| mine(c) && !wood[c]));
         let is_wood = |c: usize| mine(c) && woody.as_ref().is_none_or(|w| w[c]);
         let is_leaf = |c: usize| mine(c) && !is_wood(c);
         tally.leaves = (0..ways.len()).filter(|&c| is_leaf(c)).map(|c| ways.voxels.rows(c).len()).sum();
@@ -178,7 +202,7 @@ impl Scene {
         let axes = rings.axes();
         let mut found = measure(&self.above, &ways, &rings, &axes, spec.noise_m, run)?;
         centre(&mut rings, &axes, &found);
-        // Along the new middles the sections are truer.
+        // Sections along the new centres are more accurate.
         found = measure(&self.above, &ways, &rings, &axes, spec.noise_m, run)?;
         centre(&mut rings, &axes, &found);
         tally.circles = found.iter().flatten().flatten().count();
@@ -199,7 +223,7 @@ impl Scene {
         Ok(FoundTree { plant, foot, ground: self.ground, tally, intervals, other_stems })
     }
 
-    /// Gives the cubes to what stands on the ground; a crown that lies beyond a gap belongs to the stem below it.
+    /// Assigns the cubes to the things on the ground; a crown that lies beyond a gap belongs to the stem below it.
     fn claim(
         &self,
         stems: &Stems,
@@ -270,10 +294,10 @@ fn warn_of_pipes(in_leaf: bool, tally: &ScanTally, report: &mut Report) {
     }
 }
 
-/// Cubes that are compared with the wood, at most.
+/// Most cubes that are compared with the wood.
 const COMPARED: usize = 30_000;
 
-/// Which share of the points the wood and the leaves explain, and at which height.
+/// Computes the share of the points that the wood and the leaves explain, in total and for each tenth of the height.
 fn explain(
     tally: &mut ScanTally,
     (plant, foot): (&Plant, DVec3),
@@ -305,17 +329,56 @@ fn explain(
     }
 }
 
-/// The points that are no ground, and the height of the highest over it: one in a thousand may be noise.
-fn above_ground(all: &[DVec3], ground: Option<&Ground>) -> (Vec<DVec3>, f64) {
-    let lowest = all.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-    let over = |p: &DVec3| p.y - ground.map_or(lowest, |g| g.height(*p));
-    let thick = ground.map_or(f64::NEG_INFINITY, |g| g.thickness_m.max(0.02));
-    let above: Vec<DVec3> = all.iter().copied().filter(|p| over(p) > thick).collect();
-    let height = highest(above.iter().map(over), above.len());
-    (above, height)
+/// Least points of a class of ground that show it.
+const FEWEST_OF_GROUND: usize = 200;
+
+/// The ground through what the file says is ground, or else through the lowest points.
+fn ground_of(all: &[DVec3], classes: &[PointClass]) -> Option<Ground> {
+    let said = all.iter().zip(classes).filter(|(_, class)| **class == PointClass::Ground);
+    let said: Vec<DVec3> = said.map(|(p, _)| *p).collect();
+    let known = if said.len() < FEWEST_OF_GROUND { None } else { Ground::find(&said) };
+    known.or_else(|| Ground::find(all))
 }
 
-/// The greatest of so many heights: one in a thousand may be noise.
+fn tell_classes(classes: &[PointClass], report: &mut Report) {
+    let count = |class| classes.iter().filter(|c| **c == class).count();
+    let [ground, wood, leaves] = [PointClass::Ground, PointClass::Wood, PointClass::Leaf].map(count);
+    if ground + wood + leaves > 0 {
+        base::warn!(
+            report,
+            "scan-classes",
+            { ground = ground, wood = wood, leaves = leaves },
+            "the classes of the file were taken as they are: {ground} points of ground, {wood} of wood, {leaves} of leaves"
+        );
+    }
+}
+
+/// Points that stand on the ground.
+struct Above {
+    points: Vec<DVec3>,
+    classes: Vec<PointClass>,
+    /// Height above the ground, metres; one point in a thousand above it may be noise.
+    height: f64,
+}
+
+impl Above {
+    fn select(all: &[DVec3], classes: &[PointClass], ground: Option<&Ground>) -> Self {
+        let lowest = all.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let over = |p: &DVec3| p.y - ground.map_or(lowest, |g| g.height(*p));
+        let thick = ground.map_or(f64::NEG_INFINITY, |g| g.thickness_m.max(0.02));
+        let class = |i: usize| classes.get(i).copied().unwrap_or_default();
+        let is_above = |i: &usize| over(&all[*i]) > thick && class(*i) != PointClass::Ground;
+        let (mut points, mut kept) = (Vec::with_capacity(all.len()), vec![]);
+        for i in (0..all.len()).filter(is_above) {
+            points.push(all[i]);
+            kept.extend(classes.get(i));
+        }
+        let height = highest(points.iter().map(over), points.len());
+        Self { points, classes: kept, height }
+    }
+}
+
+/// Returns the greatest of `count` heights: one in a thousand may be noise.
 fn highest(heights: impl Iterator<Item = f64>, count: usize) -> f64 {
     let mut few: Vec<f64> = heights.step_by(count / 100_000 + 1).collect();
     base::sort_numbers(&mut few);
@@ -323,7 +386,7 @@ fn highest(heights: impl Iterator<Item = f64>, count: usize) -> f64 {
     few.get(top).copied().unwrap_or(0.0)
 }
 
-/// Cubes with three points or more in the mean, as far as the size of the tree allows.
+/// Returns the edge of cubes that have three points or more on average, as far as the size of the tree allows.
 fn cell_of(points: &[DVec3], height: f64, run: &Run<'_>) -> Result<f64, Cancelled> {
     let mut cell = height / 1200.0;
     while cell < height / 150.0 {
@@ -337,14 +400,14 @@ fn cell_of(points: &[DVec3], height: f64, run: &Run<'_>) -> Result<f64, Cancelle
     Ok(cell)
 }
 
-/// Brings another axis up.
+/// Rotation that brings another axis up.
 type Turn = fn(DVec3) -> DVec3;
 
 fn warn_of_ground(all: &[DVec3], ground: Option<&Ground>, report: &mut Report) {
     if ground.is_some() {
         return;
     }
-    // A sample is enough to see whether the scan lies down.
+    // A sample is enough to see whether the scan lies on its side.
     let few: Vec<DVec3> = all.iter().copied().step_by(all.len() / 200_000 + 1).collect();
     let ways: [(&str, Turn); 5] = [
         ("+Z", |p| DVec3::new(p.x, p.z, -p.y)),
@@ -373,7 +436,7 @@ fn warn_of_ground(all: &[DVec3], ground: Option<&Ground>, report: &mut Report) {
     );
 }
 
-/// Moves the middles of rings to those of their circles, as far as these are sound.
+/// Moves the centres of rings to those of their circles, if these are sound.
 fn centre(rings: &mut Rings, axes: &[(u32, Vec<u32>)], found: &[Vec<Option<Measured>>]) {
     for ((_, run), found) in axes.iter().zip(found) {
         for (&k, m) in run.iter().zip(found) {
@@ -387,14 +450,14 @@ fn centre(rings: &mut Rings, axes: &[(u32, Vec<u32>)], found: &[Vec<Option<Measu
     }
 }
 
-/// Axes with radii, and how well that of each node is known.
+/// Axes with radii, and the accuracy of the radius of each node.
 struct Wood {
     plant: Plant,
     pipes: Pipes,
     nodes: Vec<SeenNode>,
 }
 
-/// Axes with radii.
+/// Builds axes with radii.
 fn wood(
     points: &[DVec3],
     ways: &Ways,
@@ -415,7 +478,7 @@ fn wood(
     let (pipes, from) = Pipes::fit(&rows, least);
     let mut plant = Plant::default();
     let mut nodes: Vec<SeenNode> = vec![];
-    // Of each ring: its node, radius and offset from the pipe model.
+    // For each ring: its node, radius and offset from the pipe model.
     let mut node_of: Vec<Option<NodeId>> = vec![None; rings.rings.len()];
     let mut offset_of = vec![0.0; rings.rings.len()];
     for (key, ((bearer, run), found)) in (0_u64..).zip(axes.iter().zip(found)) {
@@ -442,7 +505,7 @@ fn wood(
                 thick.insert(0, thick[0]);
             }
             None => {
-                // Down to the ground, below the first ring.
+                // The axis continues down to the ground, below the first ring.
                 let first = line[0] - foot;
                 line.iter_mut().for_each(|p| *p -= foot);
                 if first.y > 1e-3 {
@@ -454,7 +517,7 @@ fn wood(
         if bearer.is_some() {
             line[1..].iter_mut().for_each(|p| *p -= foot);
         }
-        // The tip: one more node than there are rings.
+        // The tip is one more node than there are rings.
         while thick.len() < line.len() {
             let last = thick[thick.len() - 1];
             thick.push(0.7 * last);
@@ -478,7 +541,7 @@ fn wood(
     Wood { plant, pipes, nodes }
 }
 
-/// Circles within the wood that bears an axis are the bearer's.
+/// Removes the circles within the wood that bears an axis: they are the bearer's.
 fn hide(found: &mut [Option<Measured>], run: &[u32], rings: &Rings, plant: &Plant, bearer: Option<NodeId>) {
     let Some(bearer) = bearer else { return };
     let radius = plant.nodes.radius_m[bearer.index()];
@@ -491,7 +554,7 @@ fn hide(found: &mut [Option<Measured>], run: &[u32], rings: &Rings, plant: &Plan
     }
 }
 
-/// Middles along an axis, a little smoothed, and its tip.
+/// Returns the centres along an axis, slightly smoothed, and its tip.
 fn course(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32]) -> Vec<DVec3> {
     let raw: Vec<DVec3> = run.iter().map(|&k| rings.rings[k as usize].middle).collect();
     let mut line = raw.clone();
@@ -507,7 +570,7 @@ fn course(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32]) -> Vec<DVec
         if below == NONE { end - DVec3::Y } else { rings.rings[below as usize].middle }
     };
     let along = (end - before).normalize_or(DVec3::Y);
-    // The farthest point of the last ring along the axis, but for a stray.
+    // The farthest point of the last ring along the axis, ignoring strays.
     let mut ahead: Vec<f64> = rings.rings[last as usize]
         .cubes
         .iter()

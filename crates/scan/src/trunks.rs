@@ -1,7 +1,7 @@
-//! Trunks: what is round, stands upright and goes on from near the ground to above a person's head.
+//! Trunks: round, upright pieces that continue from near the ground to above a person's head.
 //!
-//! A trunk is seen in slices below and above breast height, so that neither undergrowth at its foot nor a crown that
-//! touches the next one hides how many trees there are.
+//! Trunks are detected in slices below and above breast height, so that neither undergrowth at their feet nor
+//! touching crowns hide the number of trees.
 
 use base::{CancelToken, Cancelled, Draw, Seed};
 use glam::{DVec2, DVec3};
@@ -10,26 +10,31 @@ use crate::circle::fit_circle;
 use crate::stems::{Site, Trunk};
 use crate::ways::{NONE, Ways};
 
-/// Where slices are and what is a trunk in them.
+/// Positions of the slices, and limits of a trunk in them.
 struct TrunkLimits {
-    /// Lower end of the lowest slice and thickness of each, metres, of a tree of [`Self::tall_m`].
+    /// Lower end of the lowest slice, metres, in a tree of height [`Self::tall_m`].
     lowest_m: f64,
+    /// Thickness of each slice, metres, in such a tree.
     slice_m: f64,
+    /// Number of slices.
     slices: usize,
-    /// Slices of lower trees are as much lower.
+    /// Height of a tree below which slices shrink in proportion, metres.
     tall_m: f64,
-    /// Slices that a trunk is seen in, of which one is among the upper two: a person reaches no higher.
+    /// Least number of slices that show a trunk, one of them among the upper two, which a person does not reach.
     seen: usize,
-    /// No trunk is thicker.
+    /// Greatest radius of a trunk, metres.
     radius_most_m: f64,
-    /// The shares of a circle's circumference that has points, of the points on it, and of those inside.
+    /// Least share of a circle's circumference that has points.
     covered: f64,
+    /// Least share of the points on the circle.
     share: f64,
+    /// Greatest share of the points inside it.
     inside: f64,
-    /// Middles of one trunk in two slices are at most so far apart, and its radii have at most this ratio.
+    /// Greatest horizontal distance between the centres of one trunk in two slices, metres.
     lean_m: f64,
+    /// Greatest ratio of its radii in two slices.
     ratio: f64,
-    /// Trunks with less wood-free space between them are one tree that forks near the ground.
+    /// Trunks with less space than this between them, metres, are one tree that forks near the ground.
     apart_m: f64,
 }
 
@@ -48,7 +53,7 @@ const TRUNKS: TrunkLimits = TrunkLimits {
     apart_m: 0.5,
 };
 
-/// What may be a trunk in one slice.
+/// A possible trunk in one slice.
 struct Disc {
     slice: usize,
     middle: DVec3,
@@ -56,7 +61,7 @@ struct Disc {
     cubes: Vec<u32>,
 }
 
-/// All trunks, the thickest first. Cost: linear.
+/// Returns all trunks, the thickest first. Cost: linear.
 pub(crate) fn find_trunks(
     points: &[DVec3],
     ways: &Ways,
@@ -82,7 +87,7 @@ pub(crate) fn find_trunks(
     Ok(joined(discs, scale))
 }
 
-/// A round piece of a slice.
+/// Returns a round piece of a slice.
 fn disc(points: &[DVec3], ways: &Ways, slice: usize, cubes: Vec<u32>, noise: f64) -> Option<Disc> {
     let cell = ways.voxels.cell();
     let mean = cubes.iter().map(|&c| ways.means[c as usize]).sum::<DVec3>() / cubes.len() as f64;
@@ -97,7 +102,7 @@ fn disc(points: &[DVec3], ways: &Ways, slice: usize, cubes: Vec<u32>, noise: f64
     if cubes.len() < 3 || flat.len() < 6 {
         return None;
     }
-    // What is a few cubes across is round as far as can be seen.
+    // The roundness of a piece that is a few cubes wide cannot be measured.
     if wide < 2.0 * cell {
         return Some(Disc { slice, middle: mean, radius: 0.7 * wide, cubes });
     }
@@ -109,7 +114,7 @@ fn disc(points: &[DVec3], ways: &Ways, slice: usize, cubes: Vec<u32>, noise: f64
         return None;
     }
     let middle = mean + DVec3::new(circle.centre.x, 0.0, circle.centre.y);
-    // Branches and undergrowth that touch the trunk are not its cubes.
+    // Branches and undergrowth that touch the trunk are not among its cubes.
     let near = circle.radius + 2.0 * cell + noise;
     let on = |c: &u32| {
         let d = ways.means[*c as usize] - middle;
@@ -119,7 +124,7 @@ fn disc(points: &[DVec3], ways: &Ways, slice: usize, cubes: Vec<u32>, noise: f64
     (!cubes.is_empty()).then_some(Disc { slice, middle, radius: circle.radius, cubes })
 }
 
-/// Discs above one another are a trunk.
+/// Joins discs above one another to trunks.
 fn joined(discs: Vec<Disc>, scale: f64) -> Vec<Trunk> {
     let mut runs: Vec<Vec<Disc>> = vec![];
     for disc in discs {

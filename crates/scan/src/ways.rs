@@ -1,4 +1,4 @@
-//! Ways along the surface of a cloud from a foot, across gaps.
+//! Paths along the surface of a cloud from a foot, across gaps.
 
 use std::collections::BinaryHeap;
 
@@ -6,28 +6,28 @@ use base::{CancelToken, Cancelled};
 use geom::{KdTree, Step, Voxels};
 use glam::DVec3;
 
-/// Cubes that are gone through between two looks whether the tree is still wanted: some milliseconds.
+/// Number of cubes between two checks for cancellation: some milliseconds.
 pub(crate) const CUBES_AT_ONCE: usize = 4096;
-/// No cube.
+/// The value for no cube.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Occupied cubes of a cloud with their way from the foot.
+/// Occupied cubes of a cloud with their paths from the foot.
 #[derive(Clone, Debug)]
 pub(crate) struct Ways {
     pub(crate) voxels: Voxels,
     /// Mean of the points of each cube.
     pub(crate) means: Vec<DVec3>,
-    /// Way from the foot; infinite where nothing leads.
+    /// Length of the path from the foot; infinite if there is none.
     pub(crate) way: Vec<f64>,
-    /// The cube before on the way.
+    /// The previous cube on the path.
     pub(crate) parent: Vec<u32>,
-    /// The plant that each cube was reached by.
+    /// The plant from which each cube was reached.
     pub(crate) plant: Vec<u32>,
-    /// How much a metre of way counts for each plant; empty for 1.
+    /// Weight of a metre of path for each plant; empty for 1.
     pub(crate) pace: Vec<f64>,
 }
 
-/// Gaps that were bridged.
+/// Bridged gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Bridges {
     pub(crate) count: usize,
@@ -55,7 +55,7 @@ impl Ways {
         }
     }
 
-    /// How long a way of so many metres is for a plant.
+    /// Returns the weighted length of `length` metres for a plant.
     fn paced(&self, plant: u32, length: f64) -> f64 {
         length * self.pace.get(plant as usize).copied().unwrap_or(1.0)
     }
@@ -64,8 +64,8 @@ impl Ways {
         self.means.len()
     }
 
-    /// The connected piece of each cube, and the number of cubes of each piece. Cubes for which `open` is false are in
-    /// none.
+    /// Returns the connected piece of each cube, and the number of cubes of each piece. Cubes for which `open` is
+    /// false are in none.
     pub(crate) fn pieces(
         &self,
         reach: i32,
@@ -101,7 +101,7 @@ impl Ways {
         Ok((piece, sizes))
     }
 
-    /// Shortest ways from cubes whose way is known (Dijkstra 1959), over cubes for which `open` is true.
+    /// Extends the shortest paths from cubes with a known path (Dijkstra 1959), over cubes for which `open` is true.
     pub(crate) fn spread(
         &mut self,
         from: &[u32],
@@ -138,8 +138,8 @@ impl Ways {
         Ok(())
     }
 
-    /// Bridges gaps of at most `gap` from what is reached to the pieces that are not, the shortest of each piece at a
-    /// time, until none is left.
+    /// Bridges gaps of at most `gap` from reached cubes to the pieces that are not reached, the shortest of each
+    /// piece at a time, until none is left.
     pub(crate) fn bridge(
         &mut self,
         gap: f64,
@@ -148,7 +148,7 @@ impl Ways {
         cancel: &CancelToken,
     ) -> Result<Bridges, Cancelled> {
         let mut bridges = Bridges::default();
-        // Each round reaches what is near; pieces behind pieces need several.
+        // Each round reaches the near pieces; pieces behind pieces need several.
         for _ in 0..24 {
             let reached: Vec<u32> = self.rows(|w, c| w.way[c].is_finite() && open(c));
             let lost: Vec<u32> = self.rows(|w, c| !w.way[c].is_finite() && open(c) && piece[c] != NONE);

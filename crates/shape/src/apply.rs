@@ -1,4 +1,4 @@
-//! Edits -> another plant: pure, the same bits everywhere.
+//! Applies edits to a plant and gives another plant: pure, the same bits everywhere.
 //!
 //! `Plant + edits -> Draft -> each edit done or not, with the reason -> Plant`
 
@@ -17,12 +17,13 @@ use crate::pipes::Pipes;
 use crate::seat::{Goal, Seat, goal, onto};
 use crate::{fill, grow, leaves, sketch_branch, twin};
 
-/// What edits need to know besides the plant. Not saved with them.
+/// Facts that edits need in addition to the plant. They are not saved with the edits.
 #[derive(Clone, Debug, Default)]
 pub struct Context {
-    /// Exponent of the pipe model that made the plant, 1.5 to 4; without, it is learnt from the plant's forks.
+    /// Exponent of the pipe model that made the plant, 1.5 to 4; without it, the exponent is learnt from the plant's
+    /// forks.
     pub pipe_exponent: Option<f64>,
-    /// What new branches grow around.
+    /// Obstacles that new branches grow around.
     pub obstacles: Obstacles,
 }
 
@@ -31,20 +32,20 @@ pub struct Context {
 pub struct Applied {
     /// The plant: `validate()` finds nothing wrong with it if it found nothing before.
     pub plant: Plant,
-    /// What became of each edit, in their order.
+    /// Outcome of each edit, in their order.
     pub outcomes: Vec<Outcome>,
 }
 
-/// Does edits one after another.
+/// Applies edits one after another.
 ///
-/// Guaranteed: the same plant for the same input on every platform and any thread count; an edit that cannot be done, or
-/// does not pass [`HandEdit::check`], says why and changes nothing; what an edit does not concern stays bit for bit as it was, but for the radii of the
-/// branches below it, which follow the pipe model; new branches keep out of obstacles; a plant that was sound is
-/// sound. Not guaranteed: that branches do not pass through one another. Cost: linear in the plant for each edit,
-/// and what grows.
+/// Guaranteed: the same plant for the same input on every platform and any thread count; an edit that cannot be done,
+/// or does not pass [`HandEdit::check`], gives its reason and changes nothing; parts that an edit does not concern stay
+/// bit for bit, except for the radii of the branches below it, which follow the pipe model; new branches keep out of
+/// obstacles; a sound plant stays sound. Not guaranteed: that branches do not pass through one another. Cost: linear in
+/// the plant for each edit, and in the new growth.
 ///
 /// # Errors
-/// [`Stopped`]: cancelled, or over the budget of the pieces that edits go through or that copies make.
+/// [`Stopped`]: cancelled, or over the budget of the pieces that edits visit or that copies make.
 ///
 /// ```
 /// use base::Run;
@@ -78,8 +79,8 @@ pub fn apply(
 
 /// A plant while it is edited: edits may follow one another at any time.
 ///
-/// Guaranteed: the same plant as from [`apply`] with all edits at once, bit for bit. So a caller that keeps one with all
-/// edits but the last pays for the last only.
+/// Guaranteed: the same plant as from [`apply`] with all edits at once, bit for bit. So a caller that keeps a plant
+/// with all edits but the last pays for the last only.
 ///
 /// ```
 /// use base::Run;
@@ -97,20 +98,20 @@ pub fn apply(
 #[derive(Clone, Debug)]
 pub struct Shaping {
     draft: Draft,
-    /// Pieces that the edits so far went through.
+    /// Number of pieces that the edits so far visited.
     gone_through: u64,
 }
 
-/// What to do about edits that take too long.
+/// Advice for edits that take too long.
 const FEWER_EDITS: &str = "take fewer edits, or edit a smaller plant";
 
 impl Shaping {
-    /// A plant that is to be edited. Cost: linear in the plant.
+    /// Starts to edit a plant. Cost: linear in the plant.
     pub fn new(plant: &Plant) -> Self {
         Self { draft: Draft::new(plant), gone_through: 0 }
     }
 
-    /// Does one edit, or says why not and changes nothing. Cost: linear in the plant, and what grows.
+    /// Applies one edit, or gives the reason why not and changes nothing. Cost: linear in the plant and the new growth.
     ///
     /// # Errors
     /// [`Stopped`]: nothing was changed.
@@ -118,9 +119,8 @@ impl Shaping {
         self.push_again(edit, context, &mut KeptGrowth::default(), run)
     }
 
-    /// As [`push`](Self::push), again and again for what a hand holds: what grew at the last call is not grown again.
-    /// `kept`: of this plant and context, as it was left by the last call; it holds nothing after an edit by which
-    /// nothing grows on.
+    /// Repeats [`push`](Self::push) for a shoot that a hand holds: growth of the last call is reused. `kept`: for this
+    /// plant and context, as the last call left it; it is empty after an edit by which nothing continues to grow.
     ///
     /// # Errors
     /// [`Stopped`]: nothing was changed.
@@ -160,7 +160,7 @@ impl Shaping {
         }
     }
 
-    /// The plant as it is now.
+    /// Returns the plant as it is now.
     pub fn into_plant(self) -> Plant {
         self.draft.into_plant()
     }
@@ -182,14 +182,14 @@ fn one(
     edit.check()?;
     let old = draft.branches.len();
     let mut changed = one_side(draft, edit, kept, bench)?;
-    // An outline and its image are filled at once.
+    // An outline and its image are filled together.
     if let Some(mirror) = edit.mirror().filter(|_| !matches!(edit, HandEdit::Silhouette { .. })) {
         twin::complete(draft, mirror, old, &mut changed, bench)?;
     }
     Ok(changed)
 }
 
-/// What is done without its mirror.
+/// Applies an edit without its mirror.
 fn one_side(
     draft: &mut Draft,
     edit: &HandEdit,
@@ -284,7 +284,7 @@ fn prune(draft: &mut Draft, axis: &AxisKey, at: f64, bench: &Bench<'_>) -> Resul
     if !draft.branches.iter().any(|b| b.alive) {
         return Err(Why::NothingLeft.into());
     }
-    // A stump keeps its wood: what is cut off half-way changes nothing below.
+    // A stump keeps its wood: a cut half-way along a branch changes nothing below.
     if !draft.branches[b].alive {
         let mut pipes = Pipes::default();
         pipes.book(bearer, radius.unwrap_or(0.0), -1.0, habit.exponent);

@@ -1,4 +1,4 @@
-//! What every edit is given, and why one stops.
+//! Context that every edit receives, and reasons why one stops.
 
 use base::{Cancelled, OverBudget, Report, Run, Stopped};
 use growth::{GrowthError, Obstacles};
@@ -7,10 +7,10 @@ use crate::draft::Draft;
 use crate::habit::Habit;
 use crate::outcome::Why;
 
-/// A plant may have so many axes at most after an edit that lets something grow.
+/// Most axes of a plant after an edit that lets something grow.
 pub(crate) const MOST_AXES: usize = 400_000;
 
-/// Why an edit stopped.
+/// Reason why an edit stopped.
 pub(crate) enum Stop {
     Why(Why),
     Stopped(Stopped),
@@ -38,13 +38,13 @@ impl From<GrowthError> for Stop {
     fn from(error: GrowthError) -> Self {
         match error {
             GrowthError::Cancelled(c) => c.into(),
-            // All numbers are ours or checked: what is left is a place where nothing can grow.
+            // All other numbers are ours or checked, so the place is one where nothing can grow.
             _ => Self::Why(Why::NothingGrew),
         }
     }
 }
 
-/// What every edit is given.
+/// Context of every edit.
 pub(crate) struct Bench<'a> {
     pub(crate) obstacles: &'a Obstacles,
     pub(crate) exponent: Option<f64>,
@@ -53,11 +53,11 @@ pub(crate) struct Bench<'a> {
 
 impl Bench<'_> {
     pub(crate) fn habit(&self, draft: &Draft) -> Habit {
-        Habit::of(draft, self.exponent)
+        Habit::learn(draft, self.exponent)
     }
 }
 
-/// A report that nobody reads: what growth warns of is part of the outcome or of no interest to a hand.
+/// Makes a report that nobody reads: warnings of growth are part of the outcome or of no interest during a gesture.
 pub(crate) fn unread() -> Report {
     Report::default()
 }

@@ -1,34 +1,34 @@
-//! A branch in the hand: how it goes, with all that it bears, as one solid thing.
+//! A branch in the hand: how it moves, with all that it bears, as one rigid body.
 //!
-//! `Plant, branch, where to -> a turn and a way`
+//! `Plant, branch, destination -> a rotation and a translation`
 
 use glam::{DQuat, DVec3};
 use plant::{AxisId, Plant};
 
-/// How a branch and all that it bears is carried: `p -> to + turn * (p - from)`, metres.
+/// Rigid motion of a branch and all that it bears: `p -> to + turn * (p - from)`, metres.
 ///
-/// What it bears goes with it as it is, and nothing else moves: so a shell may move what it shows of the branch, and needs
-/// no mesh of the plant before the hand lets go. Radii of what bears it may change then.
+/// Everything on the branch moves with it unchanged, and nothing else moves: so a shell may move the triangles of the
+/// branch that it shows, and needs no mesh of the plant before the hand lets go. Radii of its bearer may change then.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
     /// The branch.
     pub axis: AxisId,
-    /// Where it began.
+    /// Base of the branch before.
     pub from: DVec3,
-    /// Where it begins now.
+    /// Base of the branch now.
     pub to: DVec3,
-    /// How it is turned about that.
+    /// Rotation about its base.
     pub turn: DQuat,
 }
 
 impl Carried {
-    /// Where a point of the branch is now.
+    /// Returns the present position of a point of the branch.
     pub fn place(&self, p: DVec3) -> DVec3 {
         self.to + self.turn * (p - self.from)
     }
 
-    /// From its bearer onto a place of an axis, at a share of its length. `None` where either is no line, or nothing bears
-    /// the branch.
+    /// Moves it from its bearer to a place on an axis, at a share of its length. `None` where either is not a line, or
+    /// nothing bears the branch.
     pub(crate) fn onto(plant: &Plant, axis: AxisId, host: AxisId, share: f64) -> Option<Self> {
         let from = *plant.axis_points(axis).first()?;
         let bearer = plant.axis(axis).bearer?;
@@ -38,7 +38,7 @@ impl Carried {
         if line.len() < 2 {
             return None;
         }
-        let node = match Seat::of(&line, share) {
+        let node = match Seat::find(&line, share) {
             Seat::Node(node) => node,
             Seat::Before(node, t) => {
                 line.insert(node, line[node - 1].lerp(line[node], t));
@@ -52,18 +52,18 @@ impl Carried {
     }
 }
 
-/// Where on a line something sits.
+/// Place of something on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Seat {
-    /// At a node that is there.
+    /// At an existing node.
     Node(usize),
-    /// Between the node before this one and this one, at a share of the way.
+    /// Between the node before this one and this one, at a share of the distance.
     Before(usize, f64),
 }
 
 impl Seat {
-    /// At a share of a line's length; a node within a hundredth of the length is used.
-    pub(crate) fn of(points: &[DVec3], share: f64) -> Self {
+    /// Finds the seat at a share of a line's length; a node within a hundredth of the length is used.
+    pub(crate) fn find(points: &[DVec3], share: f64) -> Self {
         let lengths = lengths(points);
         let whole = lengths.last().copied().unwrap_or(0.0);
         let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
@@ -81,7 +81,7 @@ impl Seat {
     }
 }
 
-/// Arc length at every point.
+/// Returns the arc length at every point.
 pub(crate) fn lengths(points: &[DVec3]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut at = Vec::with_capacity(points.len());
@@ -94,13 +94,13 @@ pub(crate) fn lengths(points: &[DVec3]) -> Vec<f64> {
     at
 }
 
-/// From base to tip, or any direction of a line that ends where it starts.
+/// Returns the direction from base to tip, or any direction of a line that ends where it starts.
 pub(crate) fn direction(points: &[DVec3]) -> DVec3 {
     let (Some(a), Some(b)) = (points.first(), points.last()) else { return DVec3::Y };
     (*b - *a).try_normalize().unwrap_or(DVec3::Y)
 }
 
-/// Unit tangent at a node.
+/// Returns the unit tangent at a node.
 pub(crate) fn tangent(points: &[DVec3], node: usize) -> DVec3 {
     let last = points.len().saturating_sub(1);
     let (a, b) = (node.saturating_sub(1).min(last), (node + 1).min(last));

@@ -1,4 +1,4 @@
-//! The plant while it is being edited: branches as lists, so that cutting and grafting need no renumbering.
+//! The plant during an edit: branches as lists, so that cutting and grafting need no renumbering.
 //!
 //! `Plant -> Draft -> edits -> Plant`
 
@@ -25,12 +25,12 @@ pub(crate) struct Branch {
     pub(crate) points: Vec<DVec3>,
     pub(crate) radii: Vec<f64>,
     pub(crate) alive: bool,
-    /// Made by the edit that is being done.
+    /// Whether the current edit made it.
     pub(crate) fresh: bool,
 }
 
 impl Branch {
-    /// Arc length at every node.
+    /// Returns the arc length at every node.
     pub(crate) fn lengths(&self) -> Vec<f64> {
         carry::lengths(&self.points)
     }
@@ -39,23 +39,23 @@ impl Branch {
         self.points.windows(2).map(|w| w[0].distance(w[1])).sum()
     }
 
-    /// From base to tip, or any direction of a branch that ends where it starts.
+    /// Returns the direction from base to tip, or any direction of a branch that ends where it starts.
     pub(crate) fn direction(&self) -> DVec3 {
         carry::direction(&self.points)
     }
 
-    /// Unit tangent at a node.
+    /// Returns the unit tangent at a node.
     pub(crate) fn tangent(&self, node: usize) -> DVec3 {
         carry::tangent(&self.points, node)
     }
 
-    /// Bears twigs, rather than being a leaf's stalk or a root.
+    /// Whether it bears twigs, rather than being a leaf's stalk or a root.
     pub(crate) fn is_shoot(&self) -> bool {
         self.kind.is_shoot()
     }
 }
 
-/// An organ or flower and where it sits.
+/// An organ or flower and its seat.
 #[derive(Clone, Debug)]
 pub(crate) struct Borne<T> {
     pub(crate) what: T,
@@ -112,7 +112,7 @@ impl Draft {
         }
     }
 
-    /// Living branches, bearers first, otherwise in the order in which they came to be.
+    /// Returns living branches, bearers first, otherwise in the order of their creation.
     pub(crate) fn order(&self) -> Vec<usize> {
         let n = self.branches.len();
         let mut state = vec![0_u8; n];
@@ -120,7 +120,8 @@ impl Draft {
         let mut stack = Vec::new();
         for i in 0..n {
             let mut b = i;
-            // Up to the first bearer that is placed already; a branch met twice on the way is in a ring and left out.
+            // Up to the first bearer that is placed already; a branch met twice on this path is in a cycle and left
+            // out.
             while state[b] == 0 && self.branches[b].alive {
                 state[b] = 1;
                 stack.push(b);
@@ -142,7 +143,7 @@ impl Draft {
         order
     }
 
-    /// The plant of what is alive. Guaranteed: a clean `validate()` where the draft's numbers are finite.
+    /// Makes a plant of the living parts. Guaranteed: a clean `validate()` where the draft's numbers are finite.
     pub(crate) fn into_plant(self) -> Plant {
         let order = self.order();
         let (name, shapes, paint) = (self.name.clone(), self.shapes.clone(), self.paint);
@@ -190,13 +191,13 @@ impl Draft {
         plant
     }
 
-    /// Nodes, leaves and flowers, of dead branches, too: what an edit goes through.
+    /// Counts nodes, leaves and flowers, also of dead branches: the pieces that an edit visits.
     pub(crate) fn pieces(&self) -> u64 {
         let nodes: usize = self.branches.iter().map(|b| b.points.len()).sum();
         (nodes + self.organs.len() + self.flowers.len()) as u64
     }
 
-    /// Numbers of the living branches that each branch bears.
+    /// Returns the numbers of the living branches that each branch bears.
     pub(crate) fn children(&self) -> Vec<Vec<usize>> {
         let mut children = vec![Vec::new(); self.branches.len()];
         for (i, b) in self.branches.iter().enumerate().filter(|(_, b)| b.alive) {
@@ -207,7 +208,7 @@ impl Draft {
         children
     }
 
-    /// Which branches are `top` or hang on it.
+    /// Marks the branches that are `top` or hang on it.
     pub(crate) fn subtree(&self, top: usize) -> Vec<bool> {
         let children = self.children();
         let mut inside = vec![false; self.branches.len()];
@@ -221,7 +222,7 @@ impl Draft {
         inside
     }
 
-    /// Takes branches away with all that they bear. Returns how many there were.
+    /// Removes branches with all that they bear. Returns how many there were.
     pub(crate) fn remove(&mut self, gone: &[bool]) -> usize {
         let mut count = 0;
         for (branch, gone) in self.branches.iter_mut().zip(gone) {
@@ -232,7 +233,7 @@ impl Draft {
         count
     }
 
-    /// Takes organs and flowers away that sit where `gone` says.
+    /// Removes organs and flowers whose seat satisfies `gone`.
     pub(crate) fn drop_fallen(&mut self, gone: impl Fn(At) -> bool) {
         for f in &mut self.flowers {
             f.alive &= !f.at.is_some_and(&gone);
@@ -243,8 +244,8 @@ impl Draft {
         }
     }
 
-    /// Cuts a branch off at a share of its length; `None` if that leaves nothing of it: then all of it is gone.
-    /// Returns how many branches went with what was cut.
+    /// Cuts a branch off at a share of its length; removes all of it if nothing would remain. Returns how many branches
+    /// were removed with it.
     pub(crate) fn cut(&mut self, b: usize, at: f64) -> usize {
         let whole = self.branches[b].length();
         if at.is_nan() || at <= 1e-6 || whole <= 0.0 {
@@ -289,7 +290,7 @@ impl Draft {
         count
     }
 
-    /// How deep a point lies below the bark of a branch, metres; negative outside.
+    /// Returns how deep a point lies below the bark of a branch, metres; negative outside.
     pub(crate) fn depth_in(&self, b: usize, p: DVec3) -> f64 {
         let branch = &self.branches[b];
         let (distance, share) = geom::nearest_on_polyline3(&branch.points, p);
@@ -299,9 +300,10 @@ impl Draft {
         branch.radii.get(i).copied().unwrap_or(0.0) - distance
     }
 
-    /// The node at a share of a branch's length, put in if there is none; one within a hundredth of the length is used.
+    /// Returns the node at a share of a branch's length, inserted if there is none; a node within a hundredth of the
+    /// length is used.
     pub(crate) fn node_at(&mut self, b: usize, share: f64) -> usize {
-        let (i, t) = match Seat::of(&self.branches[b].points, share) {
+        let (i, t) = match Seat::find(&self.branches[b].points, share) {
             Seat::Node(node) => return node,
             Seat::Before(i, t) => (i, t),
         };
@@ -333,7 +335,7 @@ impl Draft {
             f.origin = place(f.origin);
             f.along = (turn * f.along).normalize_or(f.along);
             let normal = turn * f.normal;
-            // Turned many times over, a frame stays orthonormal.
+            // Rounding of many turns adds up, so the frame is made orthonormal again.
             let right =
                 f.along.cross(normal).try_normalize().unwrap_or_else(|| f.along.any_orthonormal_vector());
             (f.right, f.normal) = (right, right.cross(f.along));
@@ -344,7 +346,7 @@ impl Draft {
         }
     }
 
-    /// Puts a living branch into the row of a dead one.
+    /// Moves a living branch into the row of a dead one.
     pub(crate) fn exchange(&mut self, living: usize, dead: usize) {
         self.branches.swap(living, dead);
         let follow = |at: &mut Option<At>| {
@@ -357,7 +359,7 @@ impl Draft {
         self.flowers.iter_mut().filter(|f| f.alive).for_each(|f| follow(&mut f.at));
     }
 
-    /// The diagonal of the box around all living branches, metres; 1 for a plant without any.
+    /// Returns the diagonal of the box around all living branches, metres; 1 for a plant without any.
     pub(crate) fn size(&self) -> f64 {
         let points = self.branches.iter().filter(|b| b.alive).flat_map(|b| &b.points);
         let (lo, hi) =
@@ -366,7 +368,7 @@ impl Draft {
         if size.is_finite() && size > 1e-9 { size } else { 1.0 }
     }
 
-    /// The share of its bearer's length at which a branch sits.
+    /// Returns the share of its bearer's length at which a branch sits.
     pub(crate) fn share_of_bearer(&self, b: usize) -> f64 {
         let Some(at) = self.branches[b].bearer else { return 0.0 };
         let lengths = self.branches[at.branch].lengths();
@@ -375,7 +377,7 @@ impl Draft {
         if whole > 0.0 { s / whole } else { 0.0 }
     }
 
-    /// Shoots that stand on the ground (`None`) or on a branch, from its base up.
+    /// Returns the shoots that stand on the ground (`None`) or on a branch, from its base up.
     pub(crate) fn shoots_on(&self, bearer: Option<usize>) -> Vec<usize> {
         let on = |b: &Branch| b.alive && b.is_shoot() && b.bearer.map(|at| at.branch) == bearer;
         let mut all: Vec<usize> = (0..self.branches.len()).filter(|&i| on(&self.branches[i])).collect();

@@ -1,4 +1,4 @@
-//! Hand edits as plain data: what is saved, sent and done again.
+//! Hand edits as plain data, which is saved, sent and applied again.
 
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
@@ -27,41 +27,41 @@ pub enum HandEdit {
     Rotate {
         /// The branch.
         axis: AxisKey,
-        /// How.
+        /// The rotation.
         turn: Turn,
     },
     /// Moves a branch with all that it bears.
     Move {
         /// The branch.
         axis: AxisKey,
-        /// Where to.
+        /// The destination.
         to: Destination,
         /// Turns it about its base there, from how it would stand otherwise. Default not at all.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         turn: Option<Turn>,
     },
-    /// Sets a copy of a branch, with all that it bears, elsewhere; the branch itself stays. The copy is made as thin as what
-    /// bears it then.
+    /// Sets a copy of a branch, with all that it bears, elsewhere; the branch itself stays. The copy is thinned to suit
+    /// its new bearer.
     Copy {
         /// The branch.
         axis: AxisKey,
-        /// Where to; also onto the branch itself or onto what it bears.
+        /// The destination; also on the branch itself or on a part that it bears.
         to: Destination,
     },
     /// Cuts a branch off, with all that it bears beyond the cut.
     Prune {
         /// The branch.
         axis: AxisKey,
-        /// Where along it, as a share of its length; 0 (the default) takes all of it.
+        /// Place of the cut, as a share of its length; 0 (the default) removes all of it.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1.0))]
         at: f64,
     },
-    /// Cuts a branch off and lets another one grow in the room that it had. All else stays.
+    /// Cuts a branch off and grows another one in the room that it had. All else stays.
     Regrow {
         /// The branch.
         axis: AxisKey,
-        /// Another number, another branch.
+        /// Seed: another number gives another branch.
         #[serde(default)]
         seed: u64,
     },
@@ -69,17 +69,17 @@ pub enum HandEdit {
     SketchBranch {
         /// The branch that it grows from.
         bearer: AxisKey,
-        /// Where along it, as a share of its length; without, where the line starts nearest to it.
+        /// Place on the bearer, as a share of its length; without it, the place nearest to the start of the line.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<f64>,
         /// Its course, metres, at least two points; it is joined to its bearer.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
         points: Vec<DVec3>,
-        /// How many twigs grow on it, relative to the plant's habit, 0 (none) to 4; default 1.
+        /// Number of twigs on it, relative to the plant's habit, 0 (none) to 4; default 1.
         #[serde(default = "one")]
         #[schemars(range(min = 0.0, max = 4.0))]
         twigs: f64,
-        /// Another number, other twigs.
+        /// Seed: another number gives other twigs.
         #[serde(default)]
         seed: u64,
         /// Makes it on the other side of a plane, too. Default none.
@@ -88,7 +88,7 @@ pub enum HandEdit {
     },
     /// Lets branches grow along a stroke of a brush (the VR paper).
     Brush {
-        /// The branch that they grow from; without, the one nearest to the stroke's start.
+        /// The bearer of the new branches; without it, the branch nearest to the stroke's start.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         bearer: Option<AxisKey>,
         /// The stroke, metres, at least two points.
@@ -97,11 +97,11 @@ pub enum HandEdit {
         /// Radius of the brush, metres, above 0: one number, or one for each point.
         #[schemars(extend("x-unit" = "m"))]
         radius_m: Vec<f64>,
-        /// How densely it fills, 0.1 to 10: more markers, more branches; default 1.
+        /// Density of the filling, 0.1 to 10: more markers, more branches; default 1.
         #[serde(default = "one")]
         #[schemars(range(min = 0.1, max = 10.0))]
         density: f64,
-        /// Another number, other branches.
+        /// Seed: another number gives other branches.
         #[serde(default)]
         seed: u64,
         /// Makes it on the other side of a plane, too. Default none.
@@ -110,7 +110,7 @@ pub enum HandEdit {
     },
     /// Lets a shoot grow by itself, for as many rounds as a hand held on (the VR paper).
     Grow {
-        /// Where it begins.
+        /// Start of the shoot.
         from: GrowFrom,
         /// The side on which it leaves its bearer; without, the upper one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -119,11 +119,11 @@ pub enum HandEdit {
         /// Rounds of growth.
         #[schemars(range(min = 1, max = 300))]
         rounds: u32,
-        /// Numbers of growth from some round on, as a hand turned them meanwhile; what they leave out stays as it was, and
-        /// is that of guided growth at first, with the angles of the plant. Without strokes, at most 301.
+        /// Settings of growth from some round on, as a hand changed them; a field left out keeps its value, at first
+        /// that of guided growth with the angles of the plant. Without strokes, at most 301.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         changes: Vec<GuidedChange>,
-        /// Another number, other branches.
+        /// Seed: another number gives other branches.
         #[serde(default)]
         seed: u64,
         /// Makes it on the other side of a plane, too. Default none.
@@ -138,42 +138,42 @@ pub enum HandEdit {
         /// The outline in the plane, metres, at least three points; the first is not repeated.
         #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
         outline: Vec<DVec2>,
-        /// How densely it is filled, 0.1 to 10; default 1.
+        /// Density of the filling, 0.1 to 10; default 1.
         #[serde(default = "one")]
         #[schemars(range(min = 0.1, max = 10.0))]
         density: f64,
-        /// Cuts off what leaves the outline. Default true.
+        /// Whether parts outside the outline are cut off. Default true.
         #[serde(default = "yes")]
         trim: bool,
-        /// Another number, other branches.
+        /// Seed: another number gives other branches.
         #[serde(default)]
         seed: u64,
         /// Fills the image of the outline on the other side of a plane, too. Default none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         mirror: Option<Mirror>,
     },
-    /// Takes leaves away, or adds some.
+    /// Removes leaves, or adds some.
     LeafDensity {
-        /// Where.
+        /// The region.
         region: LeafRegion,
-        /// Share of the leaves that stay, 0 to 1; above 1, to 4: as many times more.
+        /// Share of the leaves that stay, 0 to 1; above 1, up to 4, the factor by which their number grows.
         #[schemars(range(min = 0.0, max = 4.0))]
         keep: f64,
-        /// Another number, other leaves.
+        /// Seed: another number gives other leaves.
         #[serde(default)]
         seed: u64,
     },
 }
 
-/// Where a shoot begins that grows by itself.
+/// Start of a shoot that grows by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GrowFrom {
-    /// On a branch; at its tip, the branch goes on.
+    /// On a branch; at its tip, the shoot continues the branch.
     Branch {
         /// The branch.
         axis: AxisKey,
-        /// Where along it, as a share of its length.
+        /// Place on it, as a share of its length.
         at: f64,
     },
     /// On the ground, metres: another stem of the plant.
@@ -186,11 +186,11 @@ pub const MOST_ROUNDS: u32 = 300;
 /// Most points of a stroke or outline.
 pub const MOST_POINTS: usize = 20_000;
 
-/// Nothing that is edited is further away, metres.
+/// Largest coordinate of an edit, metres.
 const FAR: f64 = 1e6;
 
 impl HandEdit {
-    /// The word of its kind, as files write it: `rotate`, `move`, `prune`, ...
+    /// Returns the word of its kind, as files write it: `rotate`, `move`, `prune`, ...
     pub const fn word(&self) -> &'static str {
         match self {
             Self::Rotate { .. } => "rotate",
@@ -206,7 +206,7 @@ impl HandEdit {
         }
     }
 
-    /// The plane on whose other side it is made, too.
+    /// Returns the plane in which it is mirrored, if any.
     pub(crate) const fn mirror(&self) -> Option<Mirror> {
         match self {
             Self::SketchBranch { mirror, .. }
@@ -217,7 +217,7 @@ impl HandEdit {
         }
     }
 
-    /// Whether all its numbers can be used and it is not too large: what is checked before it is kept.
+    /// Checks that all its numbers are usable and that it is not too large, before it is kept.
     ///
     /// Not guaranteed: that it can be done; that depends on the plant.
     ///
@@ -314,7 +314,7 @@ fn short(count: usize) -> Result<(), Why> {
 
 fn near(field: &'static str, points: &[DVec3]) -> Result<(), Why> {
     short(points.len())?;
-    // NaN is no maximum of numbers: asked for apart.
+    // The maximum ignores NaN, so NaN is tested separately.
     let bad = points.iter().any(|p| !p.is_finite() || p.abs().max_element() > FAR);
     if bad { Err(Why::BadNumber { field }) } else { Ok(()) }
 }
@@ -334,13 +334,13 @@ pub struct Turn {
     /// The axis, of any length above 0; right-handed.
     #[schemars(with = "[f64; 3]")]
     pub about: DVec3,
-    /// How far.
+    /// The angle.
     #[schemars(extend("x-unit" = "deg"))]
     pub degrees: f64,
 }
 
 impl Turn {
-    /// As a unit quaternion.
+    /// Returns it as a unit quaternion.
     ///
     /// # Errors
     /// [`Why::BadNumber`] for an axis without length or numbers that are not finite.
@@ -353,30 +353,30 @@ impl Turn {
         Ok(base::turn::about(about, self.degrees * (PI / 180.0)).normalize())
     }
 
-    /// The turn of a unit quaternion.
-    pub fn of(quat: DQuat) -> Self {
+    /// Returns the rotation of a unit quaternion.
+    pub fn from_quat(quat: DQuat) -> Self {
         let v = DVec3::new(quat.x, quat.y, quat.z);
         let angle = 2.0 * base::ops::atan2(v.length(), quat.w);
         Self { about: v.try_normalize().unwrap_or(DVec3::Y), degrees: angle * (180.0 / PI) }
     }
 }
 
-/// Where a branch is moved to.
+/// Destination of a moved branch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Destination {
-    /// Along its bearer by so many metres, towards the tip if positive; it keeps its angle to the bearer.
+    /// Along its bearer by this distance in metres, towards the tip if positive; it keeps its angle to the bearer.
     SlideM(f64),
-    /// Onto a place of another branch, or of its own bearer; it keeps its angle to what bears it.
+    /// Onto a place of another branch, or of its own bearer; it keeps its angle to its bearer.
     Place {
-        /// What bears it then.
+        /// The new bearer.
         axis: AxisKey,
-        /// Where along it, as a share of its length.
+        /// Place on the bearer, as a share of its length.
         at: f64,
     },
-    /// By a vector, metres: what stands on the ground is set elsewhere, what is borne slides to the place of its bearer
-    /// that is nearest to the new base.
+    /// By a vector, metres: a branch on the ground is set elsewhere, a borne branch slides to the place of its bearer
+    /// nearest to the new base.
     ByM(#[schemars(with = "[f64; 3]")] DVec3),
 }
 
@@ -397,29 +397,30 @@ impl Destination {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ViewPlane {
-    /// Where (0, 0) of the outline lies, metres.
+    /// Position of the point (0, 0) of the outline, metres.
     #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
     pub origin: DVec3,
-    /// To the viewer's right.
+    /// Direction to the viewer's right.
     #[schemars(with = "[f64; 3]")]
     pub right: DVec3,
-    /// Upwards as the viewer sees it; made to stand at a right angle to `right`.
+    /// Direction upwards as the viewer sees it; made perpendicular to `right`.
     #[schemars(with = "[f64; 3]")]
     pub up: DVec3,
 }
 
 impl Default for ViewPlane {
-    /// The drawing plane: seen from +Z.
+    /// Returns the drawing plane seen from +Z.
     fn default() -> Self {
         Self { origin: DVec3::ZERO, right: DVec3::X, up: DVec3::Y }
     }
 }
 
 impl ViewPlane {
-    /// Through a point, seen from where `towards` goes, upright as `up` says; any lengths above 0.
+    /// Returns the plane through a point, seen from the side that `towards` points to, upright along `up`; any lengths
+    /// above 0.
     ///
-    /// `up` along `towards` says nothing: then any direction across is upright. `None` for numbers that are not finite, or no
-    /// direction.
+    /// If `up` is parallel to `towards`, any direction across is upright. `None` for numbers that are not finite, or
+    /// without a direction.
     ///
     /// ```
     /// use glam::DVec3;
@@ -436,7 +437,7 @@ impl ViewPlane {
         Some(Self { origin: point, right, up: towards.cross(right) })
     }
 
-    /// `right`, `up` and the direction to the viewer, orthonormal.
+    /// Returns `right`, `up` and the direction to the viewer, orthonormal.
     ///
     /// # Errors
     /// [`Why::BadNumber`]: directions without length, parallel or not finite, or an origin that is not finite.
@@ -449,21 +450,21 @@ impl ViewPlane {
     }
 }
 
-/// A plane of symmetry: what is made on one side is made on the other.
+/// A plane of symmetry: an edit on one side is mirrored to the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mirror {
-    /// A point of it, metres.
+    /// A point on the plane, metres.
     #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
     pub point: DVec3,
-    /// Across it, of any length above 0.
+    /// Normal of the plane, of any length above 0.
     #[schemars(with = "[f64; 3]")]
     pub normal: DVec3,
 }
 
 impl Mirror {
-    /// Upright through the foot of a plant's longest stem, so that one hand of a viewer is on either side: `right` points
-    /// to the viewer's right.
+    /// Returns the upright plane through the foot of a plant's longest stem that separates the viewer's hands: `right`
+    /// points to the viewer's right.
     ///
     /// `None` for a plant without a stem, or a `right` without a level part.
     ///
@@ -488,28 +489,28 @@ impl Mirror {
         Some(Self { point, normal })
     }
 
-    /// The point of space that is seen in it where this one stands before it.
+    /// Returns the mirror image of a point.
     pub(crate) fn image(through: DVec3, normal: DVec3, p: DVec3) -> DVec3 {
         p - normal * (2.0 * (p - through).dot(normal))
     }
 
-    /// A point of it, and the unit vector across it.
+    /// Returns a point of the plane and its unit normal.
     pub(crate) fn axes(&self) -> Result<(DVec3, DVec3), Why> {
         let normal = self.normal.try_normalize().filter(|n| n.is_finite() && self.point.is_finite());
         Ok((self.point, normal.ok_or(Why::BadNumber { field: "mirror" })?))
     }
 }
 
-/// Which leaves are meant.
+/// Region of leaves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum LeafRegion {
-    /// All.
+    /// All leaves.
     All,
-    /// Those of a branch and of all that it bears.
+    /// The leaves of a branch and of all that it bears.
     Branch(AxisKey),
-    /// Those within a stroke.
+    /// The leaves within a stroke.
     Stroke {
         /// The stroke, metres, one point or more.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
@@ -520,7 +521,7 @@ pub enum LeafRegion {
     },
 }
 
-/// An edits file: [`EDITS_SCHEMA`] and the edits in the order in which they are done.
+/// An edits file: [`EDITS_SCHEMA`] and the edits in the order in which they are applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EditsFile {
@@ -534,7 +535,7 @@ pub struct EditsFile {
 pub const EDITS_SCHEMA: &str = "burgeon.edits/1";
 
 impl EditsFile {
-    /// A file of edits.
+    /// Makes a file of edits.
     pub fn new(edits: Vec<HandEdit>) -> Self {
         Self { schema: EDITS_SCHEMA.into(), edits }
     }

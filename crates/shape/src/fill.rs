@@ -1,4 +1,4 @@
-//! Edits that fill a given room: a silhouette, or the room of a branch that was cut off. By space colonisation.
+//! Edits that fill a given room by space colonisation: a silhouette, or the room of a branch that was cut off.
 
 use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
@@ -15,11 +15,11 @@ use crate::mask::Mask;
 use crate::outcome::{Changed, Why};
 use crate::pipes::Pipes;
 
-// Children of an edit's seed, by what they are for.
+// Children of an edit's seed, by their use.
 const REGROW: u64 = 0x7265_6772;
 const FILL: u64 = 0x6669_6c6c;
 
-/// A silhouette that was asked for.
+/// A requested silhouette.
 pub(crate) struct Outline<'a> {
     pub(crate) plane: &'a ViewPlane,
     pub(crate) outline: &'a [DVec2],
@@ -42,7 +42,7 @@ pub(crate) fn regrow(
     let old = draft.branches[b].clone();
     let at = old.bearer;
     let inside = draft.subtree(b);
-    // A step suits the branch: a twig of three internodes must still be a twig.
+    // The step suits the branch: a twig of three internodes must still be a twig.
     let step = habit.internode_m.min(0.12 * old.length().max(1e-9));
     let mut markers = Vec::new();
     let own = seed.child(REGROW).child(old.key);
@@ -52,7 +52,7 @@ pub(crate) fn regrow(
         }
         let mut stream = own.child(branch.key).stream(Draw::Attractors);
         let line = geom::resample3(&branch.points, 0.5 * step);
-        // The base of the branch itself is not scattered: it grows where the old one did.
+        // The base of the branch itself is not scattered: the new branch grows where the old one did.
         for p in line.into_iter().skip(1) {
             let d = loop_in_ball(&mut stream);
             markers.push(p + d * (1.4 * step));
@@ -89,7 +89,7 @@ pub(crate) fn regrow(
     let grown = colonize_from(start_from, &markers, bench.obstacles, &spec, bench.run, &mut unread())?;
     let made = graft_all(draft, &hosts, &grown.skeleton, &habit, pipes, own, bench)?;
     if let Some(&new) = made.first() {
-        // Key and number stay with the place: other edits may mean this branch.
+        // Key and number stay with the place: other edits may refer to this branch.
         draft.branches[new].key = old.key;
         draft.exchange(new, b);
     }
@@ -97,7 +97,7 @@ pub(crate) fn regrow(
     Ok(Changed { removed, added: made.len(), by_likeness, ..Changed::default() })
 }
 
-/// A whole stem: a new axis of one internode on the ground, on which the rest is grafted.
+/// Grows a whole stem: a new axis of one internode on the ground, on which the rest is grafted.
 fn regrow_stem(
     draft: &mut Draft,
     old: &crate::draft::Branch,
@@ -115,7 +115,7 @@ fn regrow_stem(
         fresh: true,
         ..old.clone()
     });
-    let hosts = Hosts::of(draft, |i| i == b);
+    let hosts = Hosts::collect(draft, |i| i == b);
     let start = hosts.skeleton.clone();
     let grown = colonize_from(start, markers, bench.obstacles, spec, bench.run, &mut unread())?;
     let made = graft_all(draft, &hosts, &grown.skeleton, habit, Pipes::default(), Seed::new(old.key), bench)?;
@@ -123,7 +123,7 @@ fn regrow_stem(
     Ok(made.len() + 1)
 }
 
-/// Uniform in the unit ball.
+/// Returns a point drawn uniformly from the unit ball.
 pub(crate) fn loop_in_ball(stream: &mut base::Stream) -> DVec3 {
     for _ in 0..64 {
         let d = DVec3::new(stream.range(-1.0, 1.0), stream.range(-1.0, 1.0), stream.range(-1.0, 1.0));
@@ -146,11 +146,11 @@ pub(crate) fn silhouette(
     let mask = Mask::new(wanted.plane, wanted.outline, wanted.mirror)?;
     let habit = bench.habit(draft);
     let (removed, pipes) = if wanted.trim { trim(draft, &mask, &habit) } else { (0, Pipes::default()) };
-    let hosts = Hosts::of(draft, |_| true);
+    let hosts = Hosts::collect(draft, |_| true);
     if hosts.node.is_empty() {
         return Err(Why::NoBranches.into());
     }
-    // The wood that is seen inside says how far from the plane the crown is; a lone trunk below it says so, too.
+    // The depth of the crown is that of the wood seen inside the outline, or else that of a lone trunk below it.
     let depths: Vec<f64> =
         hosts.skeleton.position.iter().filter(|p| mask.covers(**p)).map(|p| mask.depth_of(*p)).collect();
     let depth = if depths.is_empty() {
@@ -159,7 +159,7 @@ pub(crate) fn silhouette(
         depths.iter().sum::<f64>() / depths.len() as f64
     };
     let own = seed.child(FILL);
-    // As many markers to the room as suit the plant's internodes: the new part must not be thinner than the old.
+    // The number of markers suits the plant's internodes: the new part must not be thinner than the old.
     let natural = mask.volume() / base::ops::powf(1.2 * habit.internode_m, 3.0);
     let per_pixel = (natural / mask.pixels() as f64).clamp(1.0, 12.0) * wanted.density;
     let most = MOST_MARKERS as f64 / mask.pixels() as f64;
@@ -172,7 +172,7 @@ pub(crate) fn silhouette(
             Some(grid.nearest(*m, f64::INFINITY).map(|i| hosts.skeleton.position[i])?.distance(*m))
         };
         let least = markers.iter().filter_map(away).fold(f64::INFINITY, f64::min);
-        // Wood must be there that reaches them.
+        // The markers must lie within reach of wood.
         (least <= 0.5 * habit.size_m.max(mask.pixel * 48.0)).then_some(least)
     };
     let images = mask.images(&markers, depth);
@@ -192,7 +192,7 @@ pub(crate) fn silhouette(
     let start = hosts.skeleton.clone();
     let grown = colonize_from(start, &markers, bench.obstacles, &spec, bench.run, &mut unread())?;
     let old = hosts.node.len();
-    // A twig may pass the line by less than a step; what goes farther was on its way around.
+    // A twig may cross the line by less than a step; one that goes farther was growing around it.
     let skeleton = grown.skeleton.keep(|j| j < old || mask.near(grown.skeleton.position[j], spacing));
     let made = graft_all(draft, &hosts, &skeleton, &habit, pipes, own, bench)?;
     dress(draft, &habit, bench)?;
@@ -204,23 +204,23 @@ pub(crate) fn silhouette(
     Ok(Changed { removed, added: made.len(), alone, ..Changed::default() })
 }
 
-// How far a bend may leave the outline and still be part of the crown, in pixels of the mask: a twentieth of it.
+// Largest distance of a bend outside the outline that still counts as crown, in pixels of the mask: a twentieth of it.
 const BEND: f64 = 2.4;
 
-/// Cuts branches where they leave the outline, but for small bends; those that never come into it go as well, or what of
-/// them bears no branch that does. Returns how many went, and their pipes.
+/// Cuts branches where they leave the outline, except for small bends; branches that never enter it are removed, too,
+/// down to the last place that bears one that does. Returns how many were removed, and their pipes.
 fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
     let mut removed = 0;
     let mut pipes = Pipes::default();
     let order = draft.order();
     let reaches = reaching(draft, &order, mask);
-    // Highest order last: what hangs on a branch that is cut is gone with it.
+    // Highest order last: everything on a branch that is cut is removed with it.
     for b in order {
         let branch = &draft.branches[b];
         if !branch.alive || !branch.is_shoot() || branch.points.len() < 2 {
             continue;
         }
-        // A stem stands below the crown: it is cut only where it has been inside.
+        // A stem stands below the crown: it is cut only above a place where it was inside.
         let stem = branch.bearer.is_none();
         let fine = geom::resample3(&branch.points, (0.5 * mask.pixel).max(branch.length() / 2000.0));
         let Some(last) = last_inside(&fine, mask, stem) else {
@@ -239,8 +239,8 @@ fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
     (removed, pipes)
 }
 
-/// The last sample of a line before it leaves the outline for good, or for more than a bend; `None` where it never
-/// comes in. What starts beside the outline is in from the start.
+/// Returns the last sample of a line before it leaves the outline for good, or for more than a bend; `None` where it
+/// never enters. A line that starts next to the outline counts as inside from the start.
 fn last_inside(line: &[DVec3], mask: &Mask, stem: bool) -> Option<usize> {
     let slack = BEND * mask.pixel;
     let mut last = line.first().filter(|p| !stem && mask.near(**p, slack)).map(|_| 0);
@@ -254,7 +254,7 @@ fn last_inside(line: &[DVec3], mask: &Mask, stem: bool) -> Option<usize> {
     last
 }
 
-/// Which branches come into the outline, or bear one that does.
+/// Marks the branches that enter the outline, or bear one that does.
 fn reaching(draft: &Draft, order: &[usize], mask: &Mask) -> Vec<bool> {
     let mut reaches: Vec<bool> =
         draft.branches.iter().map(|b| b.alive && b.points.iter().any(|p| mask.covers(*p))).collect();
@@ -267,20 +267,20 @@ fn reaching(draft: &Draft, order: &[usize], mask: &Mask) -> Vec<bool> {
     reaches
 }
 
-/// The share of a branch's length up to the last node on which something hangs that comes into the outline; 0 for none.
+/// Returns the share of a branch's length up to the last node that bears something that enters the outline; 0 for none.
 fn highest_needed(draft: &Draft, b: usize, reaches: &[bool]) -> f64 {
     let borne = draft.branches.iter().zip(reaches).filter(|(c, reaches)| c.alive && **reaches);
     let nodes = borne.filter_map(|(c, _)| Some(c.bearer.filter(|p| p.branch == b)?.node));
     let Some(node) = nodes.max() else { return 0.0 };
     let points = &draft.branches[b].points;
     let below = geom::polyline_length3(&points[..(node + 1).min(points.len())]);
-    // A little above the node, which must stay.
+    // Cuts a little above the node, which must stay.
     let whole = draft.branches[b].length();
     if whole > 0.0 { (below / whole + 1e-3).min(1.0) } else { 0.0 }
 }
 
-/// Cuts a branch at a share of its length. No stumps: the crown is meant to have grown like this, so the cut end
-/// becomes a tip.
+/// Cuts a branch at a share of its length. It leaves no stump: the crown should look as if it had grown like this, so
+/// the cut end becomes a tip.
 fn cut(draft: &mut Draft, b: usize, share: f64, pipes: &mut Pipes, habit: &Habit) -> usize {
     let (bearer, base) = (draft.branches[b].bearer, draft.branches[b].radii[0]);
     let nodes = draft.branches[b].points.len();
@@ -299,7 +299,7 @@ fn cut(draft: &mut Draft, b: usize, share: f64, pipes: &mut Pipes, habit: &Habit
     removed
 }
 
-/// Leaves whose root is outside go.
+/// Removes leaves whose root is outside.
 fn trim_leaves(draft: &mut Draft, mask: &Mask, habit: &Habit) -> usize {
     let reach = habit.leaves.as_ref().map_or(0.0, |l| 0.5 * l.spec.length_m);
     let mut dropped = 0;
@@ -312,7 +312,7 @@ fn trim_leaves(draft: &mut Draft, mask: &Mask, habit: &Habit) -> usize {
     dropped
 }
 
-/// The joint that a node became.
+/// Returns the joint of a node.
 pub(crate) fn joint_of(hosts: &Hosts, at: At) -> Option<JointId> {
     hosts.node.iter().position(|n| *n == at).map(JointId::new)
 }

@@ -1,4 +1,4 @@
-//! New wood onto a plant: what growth made, as branches of the plant.
+//! Grafting: adds grown wood to a plant as branches.
 //!
 //! `Skeleton that starts at nodes of the draft -> wood -> branches, pipes`
 
@@ -20,8 +20,8 @@ pub(crate) struct Hosts {
 }
 
 impl Hosts {
-    /// All living shoots that `wanted` names, with what bears them.
-    pub(crate) fn of(draft: &Draft, wanted: impl Fn(usize) -> bool) -> Self {
+    /// Collects all living shoots that satisfy `wanted`, with their bearers.
+    pub(crate) fn collect(draft: &Draft, wanted: impl Fn(usize) -> bool) -> Self {
         let mut hosts = Self::default();
         let mut joints: Vec<Vec<Option<JointId>>> =
             draft.branches.iter().map(|b| vec![None; b.points.len()]).collect();
@@ -34,7 +34,7 @@ impl Hosts {
             let joint_at = |at: At| joints.get(at.branch)?.get(at.node).copied().flatten();
             let mut last = branch.bearer.and_then(joint_at);
             for (node, &place) in branch.points.iter().enumerate() {
-                // A borne axis starts on a joint that is there already.
+                // A borne axis starts on an existing joint.
                 if node == 0 && last.is_some() {
                     continue;
                 }
@@ -54,8 +54,8 @@ impl Hosts {
     }
 }
 
-/// Where a bud sits that is to grow out of a node: beyond its bark, which the first piece leads out through. Along the
-/// bearer that would be far.
+/// Places a bud that is to grow out of a node beyond its bark; the first piece leads out through the bark. A bud along
+/// the bearer would lie far away.
 pub(crate) fn out_of_bark(draft: &Draft, at: At, heading: DVec3) -> (Hosts, Skeleton, JointId) {
     let branch = &draft.branches[at.branch];
     let (start, along, thick) = (branch.points[at.node], branch.tangent(at.node), branch.radii[at.node]);
@@ -69,7 +69,7 @@ pub(crate) fn out_of_bark(draft: &Draft, at: At, heading: DVec3) -> (Hosts, Skel
 
 /// Grafts everything of `grown` beyond the joints of `hosts` onto the draft.
 ///
-/// `pipes`: what came and went before, as by a cut. Returns the new branches; radii below all of it are settled.
+/// `pipes`: wood added and removed before, as by a cut. Returns the new branches; radii below all of it are settled.
 pub(crate) fn graft_all(
     draft: &mut Draft,
     hosts: &Hosts,
@@ -80,7 +80,7 @@ pub(crate) fn graft_all(
     bench: &Bench<'_>,
 ) -> Result<Vec<usize>, Stop> {
     let old = hosts.node.len();
-    // Each host joint with new children gets a little skeleton of its own.
+    // Each host joint with new children gets a small skeleton of its own.
     let mut root_of: Vec<usize> = (0..grown.len()).collect();
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); old];
     for j in old..grown.len() {
@@ -146,14 +146,14 @@ fn graft(
         let bearer = axis.bearer.and_then(|node| {
             let owner = wood.plant.nodes.axis[node.index()].index();
             let node = node.index() - wood.plant.axes[owner].nodes.start as usize;
-            // What starts at the root starts on the host.
+            // An axis that starts at the root starts on the host.
             let on_host = wood.plant.axes[owner].bearer.is_none() && node == 0;
             (!on_host).then(|| At { branch: made[owner], node })
         });
         if axis.bearer.is_none()
             && let (Some(p), [r0, r1, ..]) = (points.first_mut(), radii.as_mut_slice())
         {
-            // The root's own radius is that of all that start there.
+            // The root's own radius is that of all axes that start there.
             (*p, *r0) = (host, *r1);
         }
         made.push(draft.branches.len());

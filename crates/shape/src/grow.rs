@@ -1,4 +1,4 @@
-//! A shoot that grows by itself while a hand holds on: the automatic growth of the VR paper.
+//! A shoot that grows by itself while it is held: the automatic growth of the VR paper.
 
 use base::Seed;
 use base::ops::{self, PI};
@@ -16,13 +16,13 @@ use crate::pipes::Pipes;
 use crate::sketch_branch::own_seed;
 
 const GROW: u64 = 0x6772_6f77;
-/// A shoot in the hand stops growing when its buds have looked at so many markers: a larger one would be too slow in the
-/// hand, and a shoot that was over the budget would be none at all. Some 15,000 joints, or 3,000 branches.
+/// Most markers that the buds of a held shoot test before it stops growing: a larger shoot would be too slow in the
+/// hand, and one over the budget would be refused. Some 15,000 joints, or 3,000 branches.
 const MOST_LOOKS: u64 = 1_600_000;
-/// Nearer to its tip than this share of its length, a branch goes on.
+/// A shoot that starts nearer to the tip of a branch than this share of its length continues the branch.
 const TIP: f64 = 0.02;
 
-/// What was asked for.
+/// The requested growth.
 pub(crate) struct Wish<'a> {
     pub(crate) from: &'a GrowFrom,
     pub(crate) towards: Option<DVec3>,
@@ -30,13 +30,13 @@ pub(crate) struct Wish<'a> {
     pub(crate) changes: &'a [GuidedChange],
 }
 
-/// What grows while a hand holds on, kept from one round to the next: more rounds of the same cost these rounds only.
+/// Growth kept from one round to the next while a shoot is held, so that more rounds cost only themselves.
 ///
-/// It belongs to one plant with what it grows around; what else differs is found out.
+/// It belongs to one plant with its obstacles; other differences are detected.
 #[derive(Clone, Debug, Default)]
 pub struct KeptGrowth(Option<Box<Sprout>>);
 
-/// What grew last, and where it began.
+/// The last growth and its start.
 #[derive(Clone, Debug)]
 struct Sprout {
     from: Skeleton,
@@ -46,12 +46,12 @@ struct Sprout {
 }
 
 impl KeptGrowth {
-    /// Rounds that are kept; 0 where nothing is.
+    /// Returns the number of rounds kept; 0 where nothing is.
     pub fn rounds(&self) -> u32 {
         self.0.as_ref().map_or(0, |s| s.growing.rounds())
     }
 
-    /// The same tree as grown from its start; what was grown before is not grown again.
+    /// Returns the same tree as grown from its start, but reuses earlier growth.
     fn grow(
         &mut self,
         (from, bud): (Skeleton, StartBud),
@@ -82,7 +82,7 @@ impl KeptGrowth {
     }
 }
 
-/// Cost: linear in the plant, and what grows beyond what is kept.
+/// Grows a shoot. Cost: linear in the plant, and in the growth beyond what is kept.
 pub(crate) fn grow(
     draft: &mut Draft,
     wish: &Wish<'_>,
@@ -124,22 +124,22 @@ pub(crate) fn grow(
     Ok(Changed { added, by_likeness: start.by_likeness, ..Changed::default() })
 }
 
-/// Where it begins.
+/// Start of a shoot.
 struct Start {
     hosts: Hosts,
-    /// The hosts, and what is between them and the bud.
+    /// The hosts, and the wood between them and the bud.
     from: Skeleton,
     joint: growth::JointId,
     heading: DVec3,
     place: DVec3,
-    /// Fewer joints are no growth.
+    /// Least number of joints that counts as growth.
     least: usize,
-    /// A stem that was made for it.
+    /// A stem made for the shoot.
     stem: Option<usize>,
     by_likeness: bool,
 }
 
-/// Out of the bark of a branch, at the angle that the plant's branches have; at its tip, on with it.
+/// Starts out of the bark of a branch, at the angle of the plant's branches; at its tip, continues it.
 fn on_wood(
     draft: &mut Draft,
     host: usize,
@@ -159,14 +159,14 @@ fn on_wood(
     let heading = if tip { along } else { along * cos + side * sin };
     let (hosts, mut from, mut joint) = out_of_bark(draft, At { branch: host, node }, heading);
     if tip {
-        // There is no bark before it.
+        // There is no bark in front of the tip.
         (from, joint) = (hosts.skeleton.clone(), growth::JointId::new(0));
     }
     let least = from.len() + 1;
     Start { hosts, from, joint, heading, place: place + heading, least, stem: None, by_likeness }
 }
 
-/// A new stem of one internode.
+/// Starts a new stem of one internode.
 fn on_ground(draft: &mut Draft, foot: DVec3, habit: &Habit, bench: &Bench<'_>) -> Result<Start, Stop> {
     let first = foot + DVec3::Y * habit.internode_m;
     if !bench.obstacles.free(foot) || !bench.obstacles.free(first) {
@@ -186,7 +186,7 @@ fn on_ground(draft: &mut Draft, foot: DVec3, habit: &Habit, bench: &Bench<'_>) -
         alive: true,
         fresh: true,
     });
-    let hosts = Hosts::of(draft, |i| i == stem);
+    let hosts = Hosts::collect(draft, |i| i == stem);
     let from = hosts.skeleton.clone();
     let joint = growth::JointId::new(from.len() - 1);
     let least = from.len() + 1;

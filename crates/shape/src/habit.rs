@@ -1,4 +1,4 @@
-//! What new wood must be like to belong to a plant: learnt from the plant itself, for the plants of every maker.
+//! Properties that new wood needs to match a plant: learnt from the plant itself, for the plants of every maker.
 //!
 //! `Draft -> thickness of tips, exponent, internodes, leaves`
 
@@ -18,9 +18,9 @@ pub(crate) struct Habit {
     pub(crate) tip_m: f64,
     /// Base radius over length of a borne branch.
     pub(crate) slender: f64,
-    /// Between two nodes of a shoot, metres.
+    /// Distance between two nodes of a shoot, metres.
     pub(crate) internode_m: f64,
-    /// Between a branch and its bearer, degrees.
+    /// Angle between a branch and its bearer, degrees.
     pub(crate) angle_deg: f64,
     /// Diagonal of the box around the wood, metres.
     pub(crate) size_m: f64,
@@ -28,25 +28,25 @@ pub(crate) struct Habit {
     pub(crate) leaves: Option<LeafHabit>,
 }
 
-/// How leaves stand.
+/// Arrangement of leaves.
 #[derive(Clone, Debug)]
 pub(crate) struct LeafHabit {
     pub(crate) spec: FoliageSpec,
     pub(crate) blade: Blade,
     pub(crate) shape: ShapeId,
-    /// Colours that occur.
+    /// Colours of the leaves.
     pub(crate) paints: Vec<Paint>,
 }
 
-/// The middle one; `or` where there is none.
+/// Returns the median; `or` where there is none.
 fn median(mut values: Vec<f64>, or: f64) -> f64 {
     values.retain(|v| v.is_finite());
     base::median(values).unwrap_or(or)
 }
 
 impl Habit {
-    /// `exponent`: where the maker's is known. Cost: linear in the plant.
-    pub(crate) fn of(draft: &Draft, exponent: Option<f64>) -> Self {
+    /// Learns the habit of a plant. `exponent`: the maker's, where it is known. Cost: linear in the plant.
+    pub(crate) fn learn(draft: &Draft, exponent: Option<f64>) -> Self {
         let size_m = draft.size();
         let children = draft.children();
         let shoots = || draft.branches.iter().enumerate().filter(|(_, b)| b.alive && b.is_shoot());
@@ -61,7 +61,7 @@ impl Habit {
                 .filter(|l| *l > 0.0)
                 .collect()
         };
-        // Drawn axes are sampled densely: what looks like an internode there is a dot of the pen.
+        // Drawn axes are sampled densely: a piece that looks like an internode there is a dot of the pen.
         let internode = median(segments(true), 0.03 * size_m).clamp(0.012 * size_m, 0.06 * size_m);
         let angles = borne().filter_map(|(_, b)| {
             let at = b.bearer?;
@@ -81,7 +81,7 @@ impl Habit {
     }
 }
 
-/// From `r = tip N^(1/t)` for a branch that feeds N tips.
+/// Learns the exponent from `r = tip N^(1/t)` for a branch that feeds N tips.
 fn learnt_exponent(draft: &Draft, children: &[Vec<usize>], tip_m: f64) -> f64 {
     let mut tips = vec![0_usize; draft.branches.len()];
     for b in draft.order().into_iter().rev() {
@@ -105,7 +105,7 @@ fn leaf_habit(draft: &Draft) -> Option<LeafHabit> {
     for o in leaves() {
         *counts.get_mut(o.what.shape.index())? += 1;
     }
-    // The form that occurs most, of those the first.
+    // The most frequent form, the first of equals.
     let (shape, count) = counts.iter().enumerate().rev().max_by_key(|(_, n)| **n)?;
     let Shape::Blade(blade) = draft.shapes.get(shape)? else { return None };
     if *count == 0 {
@@ -126,7 +126,7 @@ fn leaf_habit(draft: &Draft) -> Option<LeafHabit> {
         angles.push(angle * (180.0 / ops::PI));
     }
     base::sort_numbers(&mut thickest);
-    // Nine in ten leaves sit on wood that is thinner.
+    // Nine in ten leaves sit on thinner wood.
     let max_radius_m = thickest.get(thickest.len() * 9 / 10).copied().map_or(f64::INFINITY, |r| 1.2 * r);
     let bearing = draft.branches.iter().zip(&leafy).filter(|(_, n)| **n > 0);
     let run: f64 = bearing
@@ -148,7 +148,7 @@ fn leaf_habit(draft: &Draft) -> Option<LeafHabit> {
     (length_m > 0.0).then(|| LeafHabit { spec, blade: blade.clone(), shape: id, paints })
 }
 
-/// The kind of axis that grows on one of this kind.
+/// Returns the kind of axis that grows on one of this kind.
 pub(crate) const fn kind_on(bearer: AxisKind) -> AxisKind {
     match bearer {
         AxisKind::Stem | AxisKind::Petiole => AxisKind::Stem,

@@ -1,6 +1,6 @@
 //! Names of branches that survive edits and, where the branch is still there, a change of seed or setting.
 //!
-//! `AxisKey + plant -> the branch, how surely, or why not`
+//! `AxisKey + plant -> the branch and how surely it was found, or the reason why not`
 
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Plant};
@@ -12,12 +12,11 @@ use crate::outcome::Why;
 
 /// Names one axis of a plant.
 ///
-/// Guaranteed: a [`Mark`](Self::Mark) taken of an axis finds this axis again in the same plant, after edits of other
+/// Guaranteed: a [`Mark`](Self::Mark) of an axis finds this axis again in the same plant, after edits of other
 /// branches, and (by its `id`) after a change of seed or setting where the maker keeps its keys, as drawn strokes do.
-/// Where the keys are new it finds the branch most like the one that was marked: base, direction, length and order
-/// must all be near, else it says that the branch is gone. Not guaranteed: that the branch most like it is the one
-/// that a person would choose, where two are alike; and that a `Path` or `Near` means the same branch in another
-/// plant.
+/// Where the keys are new it finds the branch most like the marked one: base, direction, length and order must all be
+/// near, else it reports that the branch is gone. Not guaranteed: that the most similar branch is the one that a person
+/// would choose, where two are alike; and that a `Path` or `Near` means the same branch in another plant.
 ///
 /// ```
 /// use glam::DVec3;
@@ -27,7 +26,7 @@ use crate::outcome::Why;
 /// let trunk = p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y, DVec3::Y * 2.0], None);
 /// let fork = p.axis(trunk).node_ids().nth(1);
 /// let limb = p.add_axis(AxisKind::Branch, fork, 2, &[DVec3::Y, DVec3::new(1.0, 1.5, 0.0)], None);
-/// let key = AxisKey::of(&p, limb).ok_or("no such axis")?;
+/// let key = AxisKey::for_axis(&p, limb).ok_or("no such axis")?;
 /// assert_eq!(key.find(&p).map(|f| f.axis), Ok(limb));
 /// assert_eq!(AxisKey::Path(vec![0, 0]).find(&p).map(|f| f.axis), Ok(limb));
 /// assert!(AxisKey::Path(vec![0, 1]).find(&p).is_err());
@@ -37,16 +36,17 @@ use crate::outcome::Why;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum AxisKey {
-    /// What a program remembers of an axis that was picked.
+    /// Mark that a program remembers of a picked axis.
     Mark(Mark),
-    /// By number: which stem of the plant, which of its branches from the base up, and so on; all from 0. Stalks of
-    /// leaves and roots do not count. What people write into a file.
+    /// Path by number, as people write it into a file: the stem of the plant, its branch from the base up, and so on,
+    /// all from 0. Stalks of leaves and roots do not count.
     Path(Vec<u32>),
     /// The axis nearest to this point, metres.
     Near(#[schemars(with = "[f64; 3]")] DVec3),
 }
 
-/// What is remembered of an axis. Lengths are shares of the plant's size (the diagonal of the box around its axes).
+/// Mark by which an axis is remembered. Lengths are shares of the plant's size (the diagonal of the box around its
+/// axes).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mark {
@@ -56,13 +56,13 @@ pub struct Mark {
     pub kind: KindWord,
     /// Order of branching, 0 for a trunk.
     pub order: u32,
-    /// Where it starts.
+    /// Position of its base.
     #[schemars(with = "[f64; 3]")]
     pub base: DVec3,
-    /// From base to tip, a unit vector.
+    /// Direction from base to tip, a unit vector.
     #[schemars(with = "[f64; 3]")]
     pub direction: DVec3,
-    /// Along its course.
+    /// Length along its course.
     pub length: f64,
 }
 
@@ -86,7 +86,7 @@ impl From<AxisKind> for KindWord {
             AxisKind::Stem => Self::Stem,
             AxisKind::Petiole => Self::Petiole,
             AxisKind::Root => Self::Root,
-            // Branch, twig, and kinds to come that are not known to be green.
+            // Branch, twig, and later kinds that are not known to be green.
             _ => Self::Wood,
         }
     }
@@ -97,23 +97,26 @@ impl From<AxisKind> for KindWord {
 pub struct Found {
     /// The axis.
     pub axis: AxisId,
-    /// Its own key had changed: it is the branch most like the one that was marked.
+    /// Whether its own key had changed, so that it is the branch most like the marked one.
     pub by_likeness: bool,
 }
 
-// A branch counts as another one beyond these: an eighth of the plant's size at its base, 40 degrees, 2.5 times the
-// length. Found by eye on oaks of neighbouring seeds and settings: within them a person says "this one".
+// Limits of likeness, found by eye on oaks of neighbouring seeds and settings: within them a person recognises the
+// branch.
+/// Largest distance of the bases of two like branches, as a share of the plant's size: an eighth.
 const FAR_BASE: f64 = 0.125;
+/// Largest angle between two like branches, radians: 40 degrees.
 const FAR_ANGLE: f64 = 40.0 * (base::ops::PI / 180.0);
+/// Largest difference of the logarithms of the lengths of two like branches: a factor of 2.5.
 const FAR_LENGTH: f64 = 0.916; // ln 2.5
 
 impl AxisKey {
-    /// The name of an axis; `None` if there is no such axis. Cost: linear in the plant.
-    pub fn of(plant: &Plant, axis: AxisId) -> Option<Self> {
+    /// Returns the key of an axis; `None` if there is no such axis. Cost: linear in the plant.
+    pub fn for_axis(plant: &Plant, axis: AxisId) -> Option<Self> {
         (axis.index() < plant.axes.len()).then(|| Self::Mark(mark(&Draft::new(plant), axis.index())))
     }
 
-    /// The path of every shoot that has one, in the order of the axes. Cost: n log n in axes.
+    /// Returns the path of every shoot that has one, in the order of the axes. Cost: n log n in axes.
     pub fn paths(plant: &Plant) -> Vec<(AxisId, Vec<u32>)> {
         let draft = Draft::new(plant);
         let mut siblings: Vec<Vec<usize>> = vec![Vec::new(); draft.branches.len()];
@@ -141,23 +144,23 @@ impl AxisKey {
         named.filter_map(|(i, path)| Some((AxisId::new(i), path?))).collect()
     }
 
-    /// The axis that is meant. Cost: linear in the plant.
+    /// Finds the axis. Cost: linear in the plant.
     ///
     /// # Errors
-    /// [`Why`]: it is not there.
+    /// [`Why`]: the axis does not exist.
     pub fn find(&self, plant: &Plant) -> Result<Found, Why> {
         let (branch, by_likeness) = self.find_in(&Draft::new(plant))?;
         Ok(Found { axis: AxisId::new(branch), by_likeness })
     }
 
-    /// Whether its numbers can be used.
+    /// Checks that its numbers are usable.
     pub(crate) fn check(&self) -> Result<(), Why> {
         let (field, sound) = match self {
             Self::Mark(m) => {
                 let finite = m.base.is_finite() && m.direction.is_finite() && m.length.is_finite();
                 ("mark", finite && m.id.len() <= 16)
             }
-            // Longer than any plant is deep.
+            // Longer than the branching order of any plant.
             Self::Path(path) => ("path", path.len() <= 1000),
             Self::Near(p) => ("near", p.is_finite()),
         };
@@ -173,7 +176,7 @@ impl AxisKey {
     }
 }
 
-/// Orders of all branches, 0 for what stands on the ground.
+/// Returns the orders of all branches, 0 for those on the ground.
 fn orders(draft: &Draft) -> Vec<u32> {
     let mut orders = vec![0; draft.branches.len()];
     for b in draft.order() {
@@ -215,7 +218,8 @@ fn find_like(draft: &Draft, mark: &Mark) -> Result<(usize, bool), Why> {
         let order = f64::from(orders[i].abs_diff(mark.order));
         let unlike = base.max(angle).max(length) + order;
         let same = id == Some(b.key);
-        // The same key says much, but keys of strokes shift when a stroke is taken away: it must still look like it.
+        // The same key is strong evidence, but keys of strokes shift when a stroke is removed: the branch must still
+        // look alike.
         let cost = if same { 0.3 * unlike } else { unlike };
         if cost < 1.0 && best.is_none_or(|(c, ..)| cost < c) {
             best = Some((cost, i, !same));

@@ -1,4 +1,4 @@
-//! Leaves: fewer or more of them where a person says, and leaves for new wood.
+//! Leaves: fewer or more of them in a region, and leaves for new wood.
 
 use base::ops::PI;
 use base::{Draw, Seed};
@@ -15,12 +15,12 @@ use crate::outcome::{Changed, Why};
 /// Most leaves of a plant after an edit.
 const MOST_LEAVES: usize = 2_000_000;
 
-/// A number in [0, 1) that belongs to a key.
+/// Returns a number in [0, 1) that belongs to a key.
 fn unit(seed: Seed) -> f64 {
     (seed.number() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }
 
-/// The leaves that a region means, by row.
+/// Returns the rows of the leaves in a region, and whether its branch was found by likeness.
 fn chosen(draft: &Draft, region: &LeafRegion) -> Result<(Vec<usize>, bool), Why> {
     let leaves = draft.organs.iter().enumerate();
     let leaves = leaves.filter(|(_, o)| o.alive && o.what.kind == OrganKind::Leaf);
@@ -54,7 +54,7 @@ fn chosen(draft: &Draft, region: &LeafRegion) -> Result<(Vec<usize>, bool), Why>
     if rows.is_empty() { Err(Why::NoLeaves) } else { Ok((rows, by_likeness)) }
 }
 
-/// Of the same plant, a smaller `keep` keeps a part of what a larger one keeps.
+/// Thins leaves or adds some. On the same plant, a smaller `keep` keeps a subset of what a larger one keeps.
 pub(crate) fn density(
     draft: &mut Draft,
     region: &LeafRegion,
@@ -87,7 +87,7 @@ pub(crate) fn density(
     let spacing = bench.habit(draft).leaves.map_or(0.0, |l| l.spec.spacing_m);
     for row in rows {
         let key = Seed::new(draft.organs[row].what.key).child(seed.number());
-        // 2.3 times as many: one more for all, and two for three in ten of them.
+        // 2.3 times as many: one more for each leaf, and a second one for three in ten of them.
         let more = keep - 1.0;
         let whole = more.floor();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 4")]
@@ -103,7 +103,7 @@ pub(crate) fn density(
     Ok(changed)
 }
 
-/// A copy of a leaf, a little below it and around its shoot by the golden angle.
+/// Adds a copy of a leaf, a little below it and around its shoot by the golden angle.
 fn add_beside(draft: &mut Draft, row: usize, down: f64, k: u32, key: Seed) -> bool {
     let Some(at) = draft.organs[row].at else { return false };
     let turn = |along: DVec3| base::turn::about(along, f64::from(k) * 137.507_764 * (PI / 180.0)).normalize();
@@ -111,7 +111,7 @@ fn add_beside(draft: &mut Draft, row: usize, down: f64, k: u32, key: Seed) -> bo
     leaf.what.key = key.child(u64::from(k)).number();
     let branch = &draft.branches[at.branch];
     if branch.kind == AxisKind::Petiole {
-        // The stalk goes with its leaf.
+        // The stalk is copied with its leaf.
         let Some(foot) = branch.bearer else { return false };
         let mut stalk = branch.clone();
         stalk.key = key.child(u64::from(k)).child(1).number();
@@ -139,7 +139,7 @@ fn place(leaf: &mut Borne<plant::Organ>, from: DVec3, to: DVec3, quat: DQuat) {
     leaf.what.frame = plant::Frame::looking(origin, quat * f.along, quat * f.normal);
 }
 
-/// Leaves on the branches that this edit made, as the plant's other leaves are.
+/// Puts leaves on the branches that this edit made, arranged as the plant's other leaves.
 pub(crate) fn dress(draft: &mut Draft, habit: &Habit, bench: &Bench<'_>) -> Result<(), Stop> {
     let Some(leaves) = &habit.leaves else { return Ok(()) };
     let fresh: Vec<usize> = (0..draft.branches.len())

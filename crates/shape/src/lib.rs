@@ -1,4 +1,5 @@
-//! Hand edits on any plant: rotate, move, copy, prune, regrow, sketch, brush, grow, fill a silhouette, thin leaves (the VR paper).
+//! Hand edits on any plant: rotate, move, copy, prune, regrow, sketch, brush, grow, fill a silhouette, thin leaves (the
+//! VR paper).
 //!
 //! `Plant + [HandEdit] -> Plant + [Outcome]`
 //!
@@ -7,20 +8,20 @@
 //! | `edit` | the edits as plain data |
 //! | `key` | names of branches that survive a change |
 //! | `apply` | one edit after another; rotate, move, prune |
-//! | `carry` | how a branch in the hand goes, with all that it bears |
-//! | `bench` | what every edit is given, and why one stops |
+//! | `carry` | the motion of a branch in the hand, with all that it bears |
+//! | `bench` | the context of every edit, and reasons why one stops |
 //! | `draft` | the plant in pieces while it is edited |
-//! | `habit` | what new wood must be like: learnt from the plant |
-//! | `pipes` | radii below what changed |
-//! | `graft` | what growth made, onto the plant |
-//! | `sketch_branch`, `grow`, `fill`, `leaves` | drawn and brushed branches; what grows while it is held; regrowth and silhouettes; leaves |
-//! | `seat` | where a branch that is moved or copied comes to sit |
-//! | `twin` | a branch a second time: copies, and the other side of a plane of symmetry |
+//! | `habit` | properties of new wood, learnt from the plant |
+//! | `pipes` | radii below a change |
+//! | `graft` | grown wood, added to the plant |
+//! | `sketch_branch`, `grow`, `fill`, `leaves` | drawn and brushed branches; held growth; regrowth and silhouettes; leaves |
+//! | `seat` | the new seat of a branch that is moved or copied |
+//! | `twin` | duplicates of a branch: copies and mirror images |
 //! | `mask` | an outline as markers in space |
-//! | `pick` | which branch a ray means |
-//! | `thumb` | turns and leans from a touchpad or stick |
+//! | `pick` | the branch that a ray points at |
+//! | `thumb` | rotations and tilts from a touchpad or stick |
 //! | `tool` | gestures of a hand as state machines |
-//! | `outcome` | done, or why not, in plain words |
+//! | `outcome` | success, or the reason why not, in plain words |
 
 mod apply;
 mod bench;

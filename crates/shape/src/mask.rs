@@ -7,17 +7,18 @@ use glam::{DVec2, DVec3};
 use crate::edit::{Mirror, ViewPlane};
 use crate::outcome::Why;
 
-/// The longer side of the mask, pixels. R of the VR paper is in pixels: 10 of 48 give a crown about 0.4 as deep as broad.
+/// Longer side of the mask, pixels. R of the VR paper is in pixels: 10 of 48 give a crown about 0.4 as deep as broad.
 const SIDE: usize = 48;
-/// Its R and k: radius of a marker's ball far inside, and how fast it falls towards the edge.
+/// R of the VR paper: radius of a marker's ball far inside the outline, pixels.
 const RADIUS_PX: f64 = 10.0;
+/// k of the VR paper: rate at which the radius falls towards the edge.
 const FALL: f64 = 0.4;
 
 /// A drawn outline, its plane and its pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct Mask {
     outline: Vec<DVec2>,
-    /// The outline with its first point again at the end.
+    /// The outline, with its first point repeated at the end.
     closed: Vec<DVec2>,
     axes: [DVec3; 3],
     origin: DVec3,
@@ -27,7 +28,7 @@ pub(crate) struct Mask {
     columns: usize,
     rows: usize,
     inside: Vec<bool>,
-    /// A point of a plane of symmetry, and the unit vector across it: what is said of a point is so of its image.
+    /// A point and the unit normal of a plane of symmetry: a point counts as inside if its image does.
     mirror: Option<(DVec3, DVec3)>,
 }
 
@@ -75,7 +76,7 @@ impl Mask {
         self.mirror.map(|(through, normal)| Mirror::image(through, normal, p))
     }
 
-    /// Where a point appears in the plane.
+    /// Returns the position at which a point appears in the plane.
     pub(crate) fn seen(&self, p: DVec3) -> DVec2 {
         let d = p - self.origin;
         DVec2::new(d.dot(self.axes[0]), d.dot(self.axes[1]))
@@ -91,7 +92,7 @@ impl Mask {
         self.is_behind(p) || self.image(p).is_some_and(|q| self.is_behind(q))
     }
 
-    /// Whether a point, or its image, is seen inside the outline or at most so far outside.
+    /// Whether a point, or its image, appears inside the outline or at most `slack` outside.
     pub(crate) fn near(&self, p: DVec3, slack: f64) -> bool {
         let beside = |p: DVec3| {
             let seen = self.seen(p);
@@ -100,19 +101,19 @@ impl Mask {
         self.covers(p) || beside(p) || self.image(p).is_some_and(beside)
     }
 
-    /// What is seen of markers in the plane of symmetry, but for those that stand in the room of the markers themselves;
-    /// none without one. `depth`: as for [`markers`](Self::markers).
+    /// Returns the images of markers in the plane of symmetry, except for those in the room of the markers themselves;
+    /// empty without a plane. `depth`: as for [`markers`](Self::markers).
     pub(crate) fn images(&self, markers: &[DVec3], depth: f64) -> Vec<DVec3> {
         let deep = RADIUS_PX * self.pixel;
         let own = |p: &DVec3| self.is_behind(*p) && (self.before(*p) - depth).abs() <= deep;
         markers.iter().filter_map(|m| self.image(*m)).filter(|p| !own(p)).collect()
     }
 
-    /// A marker for every masked pixel, `density` of them in the mean, each uniform in a ball around the pixel's middle
-    /// of radius `r(n) = 2 R / (1 + e^(k n))`, n the unmasked pixels of the 5 x 5 around it.
+    /// Returns markers for every masked pixel, `density` of them on the average, each uniform in a ball around the
+    /// pixel's middle of radius `r(n) = 2 R / (1 + e^(k n))`, n the unmasked pixels of the 5 x 5 around it.
     ///
-    /// Those that would be seen outside the outline are drawn again, at last set on the pixel: the VR paper's balls stand
-    /// out beyond the line that was drawn.
+    /// Markers that would appear outside the outline are drawn again, and finally set on the pixel: the VR paper's
+    /// balls extend beyond the drawn line.
     pub(crate) fn markers(&self, density: f64, depth: f64, seed: Seed) -> Vec<DVec3> {
         let mut markers = Vec::new();
         for (i, _) in self.inside.iter().enumerate().filter(|(_, inside)| **inside) {
@@ -125,7 +126,7 @@ impl Mask {
             let middle = self.lo + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.pixel;
             for _ in 0..count {
                 let mut at = (middle, 0.0);
-                // 8 tries leave one in a thousand of the pixels well inside without a place off their middle.
+                // After 8 tries, one in a thousand of the pixels well inside has no place off its middle.
                 for _ in 0..8 {
                     let d =
                         DVec3::new(stream.range(-1.0, 1.0), stream.range(-1.0, 1.0), stream.range(-1.0, 1.0));
@@ -142,20 +143,20 @@ impl Mask {
         markers
     }
 
-    /// Radius of the ball of a pixel's markers, metres.
+    /// Returns the radius of the ball of a pixel's markers, metres.
     fn radius(&self, x: usize, y: usize) -> f64 {
         2.0 * RADIUS_PX / (1.0 + ops::exp(FALL * self.outside_around(x, y))) * self.pixel
     }
 
-    /// Masked pixels.
+    /// Counts masked pixels.
     pub(crate) fn pixels(&self) -> usize {
         self.inside.iter().filter(|i| **i).count()
     }
 
-    /// The volume that markers fill, roughly, cubic metres.
+    /// Returns roughly the volume that markers fill, cubic metres.
     pub(crate) fn volume(&self) -> f64 {
         let masked = self.inside.iter().enumerate().filter(|(_, inside)| **inside);
-        // A ball is in the mean two thirds as deep as it is broad.
+        // On the average, a ball is two thirds as deep as it is broad.
         let depth = |i: usize| self.radius(i % self.columns, i / self.columns) * 4.0 / 3.0;
         masked.map(|(i, _)| self.pixel * self.pixel * depth(i).max(self.pixel)).sum()
     }
@@ -179,7 +180,8 @@ impl Mask {
         (p - self.origin).dot(self.axes[2])
     }
 
-    /// Distance of a point before the plane; of its image, where that alone is seen inside the outline.
+    /// Returns the distance of a point in front of the plane, or that of its image where only the image appears inside
+    /// the outline.
     pub(crate) fn depth_of(&self, p: DVec3) -> f64 {
         let other = self.image(p).filter(|q| !self.is_behind(p) && self.is_behind(*q));
         self.before(other.unwrap_or(p))

@@ -1,23 +1,23 @@
-//! What became of an edit, in plain words.
+//! Outcomes of edits, in plain words.
 
 use core::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Why an edit could not be done. Its text is for people, [`code`](Self::code) for programs and translations.
+/// Reason why an edit could not be done. Its text is for people, [`code`](Self::code) for programs and translations.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Why {
-    /// No branch is like the one that was marked.
+    /// No branch is like the marked one.
     #[error("the branch is gone: no branch of this plant is like the one that was edited")]
     BranchGone,
-    /// A path names a branch by a number that is not there.
+    /// A path names a branch by a number that does not exist.
     #[error("there is no branch number {number} there: it has {there} (numbered from 0)")]
     NoSuchNumber {
         /// The number.
         number: u32,
-        /// Branches there are.
+        /// Number of branches.
         there: usize,
     },
     /// A path of no numbers.
@@ -26,7 +26,7 @@ pub enum Why {
     /// No axis near a point.
     #[error("no branch comes within {within_m:.3} m of the point")]
     NothingNear {
-        /// How near it had to be.
+        /// Largest distance allowed.
         within_m: f64,
     },
     /// A number is not finite or out of range.
@@ -44,13 +44,13 @@ pub enum Why {
     /// A stroke or outline has too many points.
     #[error("it has more than {most} points: draw it in parts")]
     TooLong {
-        /// The most there may be.
+        /// Largest number of points.
         most: usize,
     },
-    /// Stands on the ground and cannot slide along a bearer.
+    /// The branch stands on the ground and cannot slide along a bearer.
     #[error("the branch stands on the ground: it can be moved by a vector, not along a bearer")]
     NoBearer,
-    /// A branch cannot be moved onto itself or onto what it bears.
+    /// A branch cannot be moved onto itself or onto a branch that it bears.
     #[error("a branch cannot be moved onto itself or onto one of its own branches")]
     OntoItself,
     /// Nothing grew.
@@ -59,7 +59,7 @@ pub enum Why {
     /// The whole plant would be cut off.
     #[error("that would leave nothing of the plant")]
     NothingLeft,
-    /// There are no leaves there.
+    /// There are no leaves in the region.
     #[error("there are no leaves there")]
     NoLeaves,
     /// The plant has no branch at all.
@@ -68,13 +68,13 @@ pub enum Why {
     /// The edit would make the plant too large.
     #[error("the plant would have more than {most} branches")]
     TooMany {
-        /// The most there may be.
+        /// Largest number of branches.
         most: usize,
     },
 }
 
 impl Why {
-    /// A stable word for programs.
+    /// Returns a stable word for programs.
     pub const fn code(&self) -> &'static str {
         match self {
             Self::BranchGone => "branch-gone",
@@ -95,24 +95,24 @@ impl Why {
     }
 }
 
-/// What an edit changed.
+/// Changes made by an edit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Changed {
-    /// Branches taken away.
+    /// Branches removed.
     pub removed: usize,
     /// Branches added.
     pub added: usize,
     /// Branches turned or moved, those borne included.
     pub moved: usize,
-    /// Leaves taken away.
+    /// Leaves removed.
     pub leaves_removed: usize,
     /// Leaves added.
     pub leaves_added: usize,
-    /// Branches that a mirror plane has on one side only: nothing bears them on the other, or an obstacle stands there.
+    /// Branches that a mirror plane has on one side only: no wood bears them on the other, or an obstacle stands there.
     #[serde(skip_serializing_if = "is_zero")]
     pub alone: usize,
-    /// The branch was found by its likeness: its own key had changed.
+    /// Whether the branch was found by its likeness because its own key had changed.
     pub by_likeness: bool,
 }
 
@@ -121,12 +121,12 @@ const fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// What became of one edit.
+/// Outcome of one edit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// It was done.
     Done(Changed),
-    /// It was not done, and the plant is as it was.
+    /// It was not done, and the plant is unchanged.
     NotDone(Why),
 }
 

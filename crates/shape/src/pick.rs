@@ -1,4 +1,4 @@
-//! Which branch does a pointer mean?
+//! Picking: the branch that a pointer means.
 //!
 //! `ray + plant -> the nearest axis and the place on it`
 
@@ -8,32 +8,34 @@ use plant::{AxisId, Plant};
 /// A line of sight: from an eye through a pixel, or along a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, metres.
+    /// Start, metres.
     pub origin: DVec3,
-    /// Where it goes; any length above 0.
+    /// Direction; any length above 0.
     pub direction: DVec3,
 }
 
 impl Ray {
-    /// Where it meets a plane; `None` if it does not, or behind its start, or much too far away (a glancing ray).
+    /// Returns the point where it meets a plane; `None` if it does not, or behind its start, or much too far away (a
+    /// glancing ray).
     pub fn meets(&self, through: DVec3, normal: DVec3) -> Option<DVec3> {
         let d = self.direction.try_normalize()?;
         let slope = d.dot(normal.try_normalize()?);
         let t = (through - self.origin).dot(normal.normalize()) / slope;
-        // Seen under less than 3 degrees a plane is an edge: the hand's tremble would leap by metres.
+        // A plane seen under less than 3 degrees is an edge: the hand's tremble would leap by metres.
         (slope.abs() > 0.05 && t.is_finite() && t >= 0.0).then(|| self.origin + d * t)
     }
 }
 
-/// How far beside a branch a pointer may be: `metres + per_metre * distance`, so that it is the same on the screen.
+/// Largest distance of a pointer from a branch that it means: `metres + per_metre * distance`, so that it is constant
+/// on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// At the ray's start, metres, 0 or more.
+    /// Distance at the ray's start, metres, 0 or more.
     pub metres: f64,
-    /// More for every metre of distance, 0 or more; 0.02 is about 1 degree to either side.
+    /// Increase for every metre along the ray, 0 or more; 0.02 is about 1 degree to either side.
     pub per_metre: f64,
-    /// Not the branch itself is meant, but what bears it, so many branches towards the ground; default 0. In a dense
-    /// crown every pointer meets a twig, but boughs are meant, too.
+    /// Number of steps from the branch to its bearers towards the ground; default 0. In a dense crown every pointer
+    /// meets a twig, but boughs are meant, too.
     pub bearers: u32,
 }
 
@@ -48,18 +50,18 @@ impl Default for Reach {
 pub struct Pick {
     /// The axis.
     pub axis: AxisId,
-    /// The place on it, as a share of its length.
+    /// Place on it, as a share of its length.
     pub at: f64,
     /// That place, metres.
     pub point: DVec3,
-    /// How far along the ray, metres.
+    /// Distance along the ray, metres.
     pub distance_m: f64,
 }
 
-/// The shoot that a ray means: of those it hits the nearest, else the one that it passes at the smallest angle.
+/// Returns the shoot that a ray means: the nearest one that it hits, else the one that it passes at the smallest angle.
 ///
-/// With [`Reach::bearers`], what bears it instead, at the place where it does; what bears all, if there are no more.
-/// Stalks of leaves and roots are not picked. `None` if none is within `reach`. Cost: linear in nodes.
+/// With [`Reach::bearers`], returns its bearer instead, at the place of the branch; the lowest bearer, if there are no
+/// more. Stalks of leaves and roots are not picked. `None` if none is within `reach`. Cost: linear in nodes.
 ///
 /// ```
 /// use glam::DVec3;
@@ -100,7 +102,7 @@ pub fn pick(plant: &Plant, ray: &Ray, reach: Reach) -> Option<Pick> {
         }
     }
     best.map(|(_, mut pick)| {
-        // No further than there are axes: a sound plant has no circle.
+        // At most as many steps as there are axes: a sound plant has no cycle.
         for _ in plant.axes.iter().take(reach.bearers as usize) {
             let Some(bearer) = bearer_of(plant, pick) else { break };
             pick = bearer;
@@ -109,7 +111,7 @@ pub fn pick(plant: &Plant, ray: &Ray, reach: Reach) -> Option<Pick> {
     })
 }
 
-/// What bears a branch, at the place where it does.
+/// Returns the bearer of a branch, at the place of the branch.
 fn bearer_of(plant: &Plant, pick: Pick) -> Option<Pick> {
     let node = plant.axis(pick.axis).bearer?.index();
     let (axis, point) = (*plant.nodes.axis.get(node)?, *plant.nodes.position.get(node)?);
@@ -117,7 +119,7 @@ fn bearer_of(plant: &Plant, pick: Pick) -> Option<Pick> {
     Some(Pick { axis, at, point, ..pick })
 }
 
-/// Where a segment and a ray are nearest: the share along the segment and the distance along the ray.
+/// Finds where a segment and a ray are nearest: the share along the segment and the distance along the ray.
 pub(crate) fn nearest(origin: DVec3, d: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let (u, w) = (b - a, a - origin);
     let (uu, ud, uw, dw) = (u.length_squared(), u.dot(d), u.dot(w), d.dot(w));

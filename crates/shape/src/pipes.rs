@@ -1,4 +1,4 @@
-//! Radii after a cut or a graft: the pipe model, applied to what changed and to nothing else.
+//! Radii after a cut or a graft: the pipe model, applied only to the changed parts.
 //!
 //! `r^t = sum of r_i^t` (He and Cheng 2021, Eq 6; Yang et al. 2019, Eq 4)
 
@@ -6,15 +6,15 @@ use base::ops;
 
 use crate::draft::{At, Draft};
 
-/// The thickest that old wood becomes by what is grafted onto it: a tenth more, and one and a half tips.
+/// Returns the largest radius of old wood after a graft: a tenth more, and one and a half tips.
 ///
-/// A twig may become a branch, a trunk stays what it was for the eye: filling an outline is about the crown. It rises with
-/// the radius, so that nothing becomes thicker than what bears it.
+/// A twig may become a branch, but a trunk stays the same to the eye: filling an outline is about the crown. The limit
+/// grows with the radius, so that nothing becomes thicker than its bearer.
 fn most(old_m: f64, tip_m: f64) -> f64 {
     1.1 * old_m + 1.5 * tip_m
 }
 
-/// Makes a new branch on old wood, with all that it bears, so thin that its base suits its bearer; tips stay.
+/// Thins a new branch on old wood, with all that it bears, so that its base suits its bearer; tips stay.
 pub(crate) fn fit(draft: &mut Draft, b: usize, tip_m: f64) {
     let branch = &draft.branches[b];
     let (Some(at), Some(&base)) = (branch.bearer, branch.radii.first()) else { return };
@@ -33,26 +33,26 @@ pub(crate) fn fit(draft: &mut Draft, b: usize, tip_m: f64) {
     }
 }
 
-/// Pipes (`r^t`) that came to a node or went from it.
+/// Pipes (`r^t`) added to a node or removed from it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pipes {
-    /// Old wood grows by a bounded amount only, as under what was grafted; what was moved has its own thickness.
+    /// Whether old wood grows by a bounded amount only, as under a graft; a moved branch keeps its thickness.
     pub(crate) bounded: bool,
     changes: Vec<(At, f64)>,
 }
 
 impl Pipes {
-    /// A branch of this base radius came to (`sign` 1) or left (`sign` -1) a node.
+    /// Books a branch of this base radius as added to (`sign` 1) or removed from (`sign` -1) a node.
     pub(crate) fn book(&mut self, at: Option<At>, base_radius_m: f64, sign: f64, exponent: f64) {
         if let Some(at) = at {
             self.changes.push((at, sign * ops::powf(base_radius_m.max(0.0), exponent)));
         }
     }
 
-    /// Sets the radii from there down to the ground.
+    /// Sets the radii from those nodes down to the ground.
     ///
-    /// Guaranteed: finite; nothing changes that lies elsewhere; radii that fell towards the tip still do; no node
-    /// becomes thinner than the thickest branch that it bears, nor than a tip, unless it was.
+    /// Guaranteed: finite; nothing elsewhere changes; radii that fell towards the tip still do; no node becomes thinner
+    /// than the thickest branch that it bears, nor than a tip, unless it was.
     pub(crate) fn settle(self, draft: &mut Draft, exponent: f64, tip_m: f64) {
         if self.changes.is_empty() {
             return;
@@ -63,7 +63,7 @@ impl Pipes {
                 delta[at.branch].push((at.node, pipes));
             }
         }
-        // The thickest branch at each node: no fork may be thinner than what it bears.
+        // The thickest branch at each node: no fork may be thinner than its branches.
         let children = draft.children();
         for b in draft.order().into_iter().rev() {
             let mut here = core::mem::take(&mut delta[b]);
@@ -83,7 +83,7 @@ impl Pipes {
             let branch = &mut draft.branches[b];
             let (before, bearer) = (branch.radii[0], branch.bearer);
             let (mut sum, mut old_above) = (0.0, 0.0);
-            // Above the highest change not a bit may move: a power and its root are not the identity.
+            // Above the highest change not a bit may change: a power and its root are not the identity.
             let highest = here.last().map_or(0, |(n, _)| *n).min(branch.radii.len().saturating_sub(1));
             for node in (0..=highest).rev() {
                 while here.last().is_some_and(|(n, _)| *n >= node) {
@@ -93,7 +93,7 @@ impl Pipes {
                 let pipes = ops::powf((ops::powf(old, exponent) + sum).max(0.0), 1.0 / exponent);
                 let wanted = if branch.fresh || !self.bounded { pipes } else { pipes.min(most(old, tip_m)) };
                 let floor = thickest[node].max(old.min(tip_m));
-                // What was a step in the radii on purpose (a swollen node) stays one.
+                // An intended step in the radii (a swollen node) stays one.
                 let above = branch.radii.get(node + 1).copied().unwrap_or(0.0);
                 let least = if old >= old_above { above } else { above.min(old.max(wanted)) };
                 (branch.radii[node], old_above) = (wanted.max(floor).max(least), old);

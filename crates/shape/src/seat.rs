@@ -1,4 +1,4 @@
-//! Where a branch comes to sit: `Draft, branch, destination -> wood or ground`
+//! The new seat of a branch: `Draft, branch, destination -> wood or ground`
 
 use glam::{DQuat, DVec3};
 
@@ -6,16 +6,16 @@ use crate::draft::{At, Draft};
 use crate::edit::Destination;
 use crate::outcome::Why;
 
-/// Where a branch is taken.
+/// Destination of a branch in a plant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Goal {
     /// Onto a branch, at a share of its length.
     Wood(usize, f64),
-    /// By a vector, metres: what stands on the ground.
+    /// By a vector, metres, for a branch on the ground.
     Ground(DVec3),
 }
 
-/// Where a destination takes a branch of the plant as it is.
+/// Resolves a destination in the plant as it is.
 pub(crate) fn goal(draft: &Draft, b: usize, to: &Destination) -> Result<Goal, Why> {
     let bearer = draft.branches[b].bearer;
     match to {
@@ -43,17 +43,17 @@ pub(crate) fn goal(draft: &Draft, b: usize, to: &Destination) -> Result<Goal, Wh
     }
 }
 
-/// A place on wood for a branch, and how it is turned to keep its angle to what bears it.
+/// A seat on wood for a branch, and the rotation that keeps its angle to its bearer.
 pub(crate) struct Seat {
     pub(crate) at: At,
     pub(crate) target: DVec3,
     pub(crate) turn: DQuat,
 }
 
-/// Makes a node for it where there is none.
+/// Finds the seat on wood and makes a node for it where there is none.
 pub(crate) fn onto(draft: &mut Draft, b: usize, host: usize, share: f64) -> Seat {
     let node = draft.node_at(host, share.clamp(0.0, 1.0));
-    // Read after the new node: it may have moved the old one on.
+    // Read after the new node, which may have shifted the old one.
     let old = draft.branches[b].bearer;
     let before = old.map_or(DVec3::Y, |at| draft.branches[at.branch].tangent(at.node));
     let (target, after) = (draft.branches[host].points[node], draft.branches[host].tangent(node));

@@ -34,7 +34,7 @@ pub(crate) struct Stroke<'a> {
     pub(crate) density: f64,
 }
 
-/// A line that can be used: finite, of some length, neighbours apart.
+/// Returns a usable line: finite, of some length, with distinct neighbours.
 fn usable_line(points: &[DVec3], size_m: f64) -> Result<Vec<DVec3>, Why> {
     if !points.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e6) {
         return Err(Why::BadNumber { field: "points" });
@@ -107,7 +107,7 @@ fn lengths(line: &[DVec3]) -> Vec<f64> {
     of.collect()
 }
 
-/// Two branches that are drawn alike must not have one key.
+/// Returns a seed of its own for a branch: two branches that are drawn alike must not share one key.
 pub(crate) fn own_seed(draft: &Draft, seed: Seed, place: DVec3) -> Seed {
     let bits = place.x.to_bits() ^ place.y.to_bits().rotate_left(21) ^ place.z.to_bits().rotate_left(42);
     let mut own = seed.child(bits);
@@ -117,7 +117,7 @@ pub(crate) fn own_seed(draft: &Draft, seed: Seed, place: DVec3) -> Seed {
     own
 }
 
-/// The line joined to its bearer, softened, as far as no obstacle stands in its way.
+/// Joins a line to its bearer, softens it, and ends it where an obstacle stands in its way.
 fn course(start: DVec3, mut line: Vec<DVec3>, habit: &Habit, bench: &Bench<'_>) -> Result<Vec<DVec3>, Why> {
     let length = geom::polyline_length3(&line);
     // A hand starts near the bearer, hardly ever on it.
@@ -137,7 +137,7 @@ fn course(start: DVec3, mut line: Vec<DVec3>, habit: &Habit, bench: &Bench<'_>) 
     if course.len() < 2 { Err(Why::NothingGrew) } else { Ok(course) }
 }
 
-/// Twigs on a drawn branch: longer ones below, none at its base. Returns how many branches grew.
+/// Grows twigs on a drawn branch: longer ones below, none at its base. Returns how many branches grew.
 fn twigs(
     draft: &mut Draft,
     b: usize,
@@ -147,7 +147,7 @@ fn twigs(
     bench: &Bench<'_>,
 ) -> Result<usize, Stop> {
     let branch = &draft.branches[b];
-    // A herb's stems hardly branch: unless others do, a drawn one does not either.
+    // A herb's stems hardly branch: a drawn one branches only if others do.
     let forks = draft.branches.iter().filter(|c| c.alive && c.is_shoot() && c.bearer.is_some()).count();
     let bare = branch.kind == AxisKind::Root || (branch.kind == AxisKind::Stem && forks < 4);
     let length = branch.length();
@@ -158,7 +158,7 @@ fn twigs(
     let wish = (density * 0.75 * length / internode).round().clamp(0.0, 80.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 80")]
     let (count, rounds) = (wish as u32, (0.35 * length / internode).round().clamp(2.0, 8.0) as u32);
-    let hosts = Hosts::of(draft, |i| i == b);
+    let hosts = Hosts::collect(draft, |i| i == b);
     let branch = &draft.branches[b];
     let lengths = branch.lengths();
     let mut buds = Vec::new();
@@ -221,7 +221,7 @@ pub(crate) fn brush(
         Some(key) => key.find_in(draft)?,
         None => (nearest_shoot(draft, points[0], 0.5 * habit.size_m)?, false),
     };
-    // What is drawn inside the bark of the bearer is not seen: the branch begins where the stroke comes out.
+    // The part inside the bark of the bearer is hidden: the branch begins where the stroke comes out.
     let hidden = points.iter().take_while(|p| draft.depth_in(host, **p) > 0.0).count();
     if hidden == points.len() {
         return Err(Why::NothingGrew.into());
@@ -231,7 +231,7 @@ pub(crate) fn brush(
     let share = geom::nearest_on_polyline3(&draft.branches[host].points, points[0]).1;
     let node = draft.node_at(host, share);
     let (at, start) = (At { branch: host, node }, draft.branches[host].points[node]);
-    // A hand starts near the bearer, hardly ever on it: a short first piece would lead anywhere.
+    // A hand starts near the bearer, hardly ever on it: a short first piece would point anywhere.
     if points[0].distance(start) > radii[0] {
         points.insert(0, start);
         radii.insert(0, radii[0]);
@@ -275,7 +275,7 @@ pub(crate) fn brush(
     Ok(Changed { added: made.len(), by_likeness, ..Changed::default() })
 }
 
-/// The shoot nearest to a point.
+/// Finds the shoot nearest to a point.
 fn nearest_shoot(draft: &Draft, p: DVec3, within_m: f64) -> Result<usize, Why> {
     let shoots = draft.branches.iter().enumerate().filter(|(_, b)| b.alive && b.is_shoot());
     let best = shoots

@@ -1,12 +1,12 @@
-//! What a thumb on a touchpad or stick says: exact turns, and the lean of the drawing plane (the VR paper).
+//! A thumb on a touchpad or stick: exact rotations, and the tilt of the drawing plane (the VR paper).
 
 use base::ops::{self, PI};
 use glam::DVec2;
 
-/// Nearer to the centre than this share of the pad, a thumb says nothing about an angle.
+/// Distance from the centre, as a share of the pad, within which the angle of a thumb is undefined.
 const DEAD: f64 = 0.15;
 
-/// A thumb that turns what is held, on a pad or stick whose reach is 1.
+/// A thumb that rotates the held branch, on a pad or stick of radius 1.
 ///
 /// ```
 /// use glam::DVec2;
@@ -21,27 +21,29 @@ pub struct Thumb {
 }
 
 impl Thumb {
-    /// The turn since the last place, radians, counter-clockwise: `atan2(a x b, a . b)`, above -pi and at most pi.
+    /// Returns the rotation since the last position, radians, counter-clockwise: `atan2(a x b, a . b)`, above -pi and
+    /// at most pi.
     ///
-    /// `at`: where the thumb is, the centre of the pad 0, its rim 1, x to the right and y up; `None` when it is lifted.
-    /// 0 when it was put down just now, near the centre, or where the device says nonsense. Added up, the turns are the
-    /// angle between the first and the last place, through however many rounds, if no step is half a round or more.
+    /// `at`: position of the thumb, the centre of the pad 0, its rim 1, x to the right and y up; `None` when it is
+    /// lifted. 0 when it has just been put down, near the centre, or for invalid positions. The rotations add up to the
+    /// angle between the first and the last position, over any number of rounds, if no step is half a round or more.
     pub fn turn(&mut self, at: Option<DVec2>) -> f64 {
         let now = at.filter(|p| p.is_finite() && p.length() >= DEAD);
         let turn = match (self.last, now) {
             (Some(a), Some(b)) => ops::atan2(a.perp_dot(b), a.dot(b)),
             _ => 0.0,
         };
-        // Through the centre to the other side is no turn: it begins anew there.
+        // A move through the centre to the other side is not a rotation: it begins anew there.
         self.last = now;
         turn
     }
 }
 
-/// How far the drawing plane leans, radians, -pi/2 to pi/2: by the distance from the centre, away from the viewer in the
-/// upper half of the pad and towards the viewer in the lower one. For controllers that only point: the depth of a stroke.
+/// Returns the tilt of the drawing plane, radians, -pi/2 to pi/2: by the distance from the centre, away from the viewer
+/// in the upper half of the pad and towards the viewer in the lower one. For controllers that only point, it sets the
+/// depth of a stroke.
 ///
-/// `at` as in [`Thumb::turn`]; 0 near the centre, on the line between the halves, or where the device says nonsense.
+/// `at` as in [`Thumb::turn`]; 0 near the centre, on the line between the halves, or for invalid positions.
 pub fn lean_of_thumb(at: DVec2) -> f64 {
     let reach = at.length();
     if !at.is_finite() || reach < DEAD || at.y == 0.0 {
@@ -65,7 +67,7 @@ mod tests {
         for rounds in [-3.0, -0.25, 0.5, 2.0] {
             let mut thumb = Thumb::default();
             let whole = 2.0 * PI * rounds;
-            // The reach changes on the way: an angle does not depend on it.
+            // The radius changes on the way: an angle does not depend on it.
             let places = (0..=60).map(|k| f64::from(k) / 60.0);
             let sum: f64 = places.map(|t| thumb.turn(Some(on_rim(0.7 + whole * t, 0.3 + 0.7 * t)))).sum();
             assert!((sum - whole).abs() < 1e-9, "{rounds}: {sum}");

@@ -1,4 +1,5 @@
-//! Tools as state machines: what a hand does, as data, becomes edits. Mouse, pen and controllers are adapters.
+//! Tools as state machines: they turn the motions of a hand, as data, into edits. Mouse, pen and controllers are
+//! adapters.
 //!
 //! `Input (rays) -> Tool -> Response { preview, commit }`
 
@@ -14,24 +15,24 @@ use crate::edit::{Destination, GrowFrom, HandEdit, LeafRegion, MOST_ROUNDS, Mirr
 use crate::key::AxisKey;
 use crate::pick::{Pick, Ray, Reach, nearest, pick};
 
-/// What a tool does, with its settings. Lengths in metres of the plant.
+/// Kind of a tool, with its settings. Lengths in metres of the plant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum ToolKind {
     /// Point at a branch: it makes no edit.
     Pick,
-    /// Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes. A hand
-    /// that turns rolls it, too, and one that pulls takes it off its bearer: it is dropped on the wood nearest to its base.
+    /// Drag a branch around its base: in the plane that faces the viewer, or after the tip of a controller. A hand that
+    /// turns also rolls it, and one that pulls takes it off its bearer: it is dropped on the wood nearest to its base.
     Rotate,
-    /// Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the
-    /// ground, over the ground.
+    /// Drag a branch along its bearer, or with the tip of a controller to a new bearer; a branch on the ground, over
+    /// the ground.
     Move,
-    /// Drag a copy of a branch to whatever bears it then; of what stands on the ground, over the ground.
+    /// Drag a copy of a branch to a new bearer; a copy of a branch on the ground, over the ground.
     Copy,
-    /// Click a branch: it is cut where it was clicked, or all of it.
+    /// Click a branch: it is cut at the clicked place, or removed.
     Prune {
-        /// All of it.
+        /// Whether to remove all of it.
         whole: bool,
     },
     /// Click a branch: another one grows in its place.
@@ -40,25 +41,26 @@ pub enum ToolKind {
     Sketch {
         /// Twigs on it, 0 to 4.
         twigs: f64,
-        /// How far the drawing plane leans back from the viewer, degrees; 0 faces the viewer.
+        /// Tilt of the drawing plane away from the viewer, degrees; 0 faces the viewer.
         tilt_deg: f64,
     },
     /// Brush, and branches grow along the stroke.
     Brush {
         /// Radius at full pressure, metres, above 0.
         radius_m: f64,
-        /// 0.1 to 10.
+        /// Density, 0.1 to 10.
         density: f64,
     },
     /// Hold on a branch or on the ground, and a shoot grows by itself, round by round.
     Grow(Growth),
-    /// Draw an outline around what is to be filled.
+    /// Draw an outline around the space to be filled.
     Silhouette {
-        /// 0.1 to 10.
+        /// Density, 0.1 to 10.
         density: f64,
-        /// Cut off what leaves it.
+        /// Whether parts outside it are cut off.
         trim: bool,
-        /// Where it is drawn, if that was placed in space; without, it faces the viewer and lies in the plant's middle.
+        /// Plane of the outline, if it was placed in space; without it, the plane faces the viewer through the plant's
+        /// middle.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         plane: Option<ViewPlane>,
     },
@@ -71,7 +73,7 @@ pub enum ToolKind {
     },
 }
 
-/// How a shoot grows by itself; every number may change while it does.
+/// Settings of a shoot that grows by itself; every number may change while it grows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Growth {
@@ -79,11 +81,11 @@ pub struct Growth {
     pub vigour: f64,
     /// Apical control: the share of the main axis at a fork, 0 to 1.
     pub apical: f64,
-    /// Between a shoot and the buds at its side, 0 to 180 degrees.
+    /// Angle between a shoot and its lateral buds, 0 to 180 degrees.
     pub angle_deg: f64,
-    /// Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1.
+    /// Pull to the light, or of the weight if negative, -10 to 10; free space pulls with 1.
     pub lift: f64,
-    /// How strongly shoots keep apart, 0 to 10.
+    /// Strength with which shoots keep apart, 0 to 10.
     pub apart: f64,
 }
 
@@ -96,7 +98,7 @@ impl Default for Growth {
 }
 
 impl Growth {
-    /// As numbers of growth from a round on.
+    /// Returns the settings as a change of growth from a round on.
     fn change_at(self, round: u32) -> GuidedChange {
         GuidedChange {
             round,
@@ -113,28 +115,28 @@ impl Growth {
 /// A pointing device at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
-    /// Where it points.
+    /// Its ray.
     pub ray: Ray,
-    /// Where the viewer looks.
+    /// Direction of the viewer's gaze.
     pub forward: DVec3,
-    /// The viewer's upwards.
+    /// The viewer's upward direction.
     pub up: DVec3,
-    /// 0 to 1; 1 for a mouse.
+    /// Pressure, 0 to 1; 1 for a mouse.
     pub pressure: f64,
-    /// The place of a tracked controller's tip: it draws there, not on a plane.
+    /// Position of a tracked controller's tip, which draws there and not on a plane.
     pub tip: Option<DVec3>,
-    /// How that controller is turned: what it holds turns with it.
+    /// Orientation of that controller: the held branch turns with it.
     pub hand: Option<DQuat>,
 }
 
 impl Pointer {
-    /// How the hand is turned, as a unit quaternion; none where the device says nonsense.
+    /// Returns the orientation of the hand as a unit quaternion; `None` for an invalid one.
     fn held(&self) -> Option<DQuat> {
         self.hand.filter(|q| q.is_finite() && q.length_squared() > 1e-6).map(DQuat::normalize)
     }
 }
 
-/// What a hand did.
+/// Input of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Input {
@@ -142,29 +144,29 @@ pub enum Input {
     Down(Pointer),
     /// The pointer moved.
     Move(Pointer),
-    /// It was let go: the gesture is an edit.
+    /// The button, pen or trigger was released: the gesture becomes an edit.
     Up(Pointer),
-    /// Escape, a second finger, the device was lost: no edit.
+    /// Escape, a second finger, or loss of the device: no edit.
     Cancel,
-    /// A thumbstick, touchpad or wheel turned by so many radians: an exact rotation of the branch that is held, or a
-    /// lean of the drawing plane about the pointer (away from the viewer if positive).
+    /// A thumbstick, touchpad or wheel turned by this angle in radians: an exact rotation of the held branch, or a tilt
+    /// of the drawing plane about the pointer (away from the viewer if positive).
     Twist(f64),
     /// The brush changed while it is down: radius in metres, density.
     Brush(f64, f64),
-    /// What grows is a round older.
+    /// The growing shoot is a round older.
     Round,
-    /// What grows has other numbers from this round on; numbers out of their ranges change nothing.
+    /// The growing shoot has new settings from this round on; numbers out of their ranges change nothing.
     Grow(Growth),
 }
 
-/// What a tool says to an input.
+/// Response of a tool to an input.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Response {
-    /// The edit that letting go would make: to be shown, not saved.
+    /// The edit that a release would make: to be shown, not saved.
     pub preview: Option<HandEdit>,
     /// The edit of a finished gesture.
     pub commit: Option<HandEdit>,
-    /// What is under the pointer or held.
+    /// The branch under the pointer or in the hand.
     pub picked: Option<Pick>,
 }
 
@@ -189,7 +191,7 @@ pub struct Response {
 pub struct Tool {
     kind: ToolKind,
     reach: Reach,
-    /// On whose other side it works, too.
+    /// Plane of symmetry in which its edits are mirrored.
     mirror: Option<Mirror>,
     /// The seed of the next edit that lets something grow.
     seed: u64,
@@ -206,9 +208,11 @@ enum State {
         about: DVec3,
         last: Option<DVec3>,
         angle: f64,
-        /// Where a tracked tip took hold, from the pivot, how its hand was turned then, and how it turned the branch since.
+        /// Position at which a tracked tip took hold, relative to the pivot.
         tip: Option<DVec3>,
+        /// Orientation of the hand when it took hold.
         hand: Option<DQuat>,
+        /// Rotation of the branch since then.
         swing: DQuat,
         off: Option<Pulled>,
     },
@@ -236,22 +240,22 @@ enum State {
     Stroking(Box<Stroking>),
 }
 
-/// Where a branch is slid to.
+/// Destination of a sliding branch.
 #[derive(Clone, Copy, Debug)]
 enum Goal {
     /// A place of an axis, as a share of its length.
     Wood(AxisId, f64),
-    /// So far over the ground, metres.
+    /// By this vector over the ground, metres.
     Ground(DVec3),
 }
 
 /// A branch that was pulled off its bearer.
 #[derive(Clone, Copy, Debug)]
 struct Pulled {
-    /// What it would be dropped on, and where along that, as a share of its length.
+    /// The axis that it would be dropped on, and the place there, as a share of its length.
     host: AxisId,
     share: f64,
-    /// How the hand turned since it took hold.
+    /// Rotation of the hand since it took hold.
     turn: DQuat,
 }
 
@@ -262,38 +266,39 @@ struct Stroking {
     through: DVec3,
     right: DVec3,
     normal: DVec3,
-    /// A tip draws on the plane before it, not in space.
+    /// Whether a tip draws on the plane in front of it, not in space.
     on_plane: bool,
     spacing: f64,
     points: Vec<DVec3>,
     radius_m: Vec<f64>,
 }
 
-/// Ground farther from the plant's origin than this is not meant, metres.
+/// Largest distance from the plant's origin of a point on the ground, metres.
 const FARTHEST_M: f64 = 200.0;
 /// Radians of a degree.
 const DEGREE: f64 = PI / 180.0;
-/// Beyond this, a drawing plane is seen almost from its edge.
+/// Largest tilt of a drawing plane, degrees: beyond it, the plane is seen almost from its edge.
 const MOST_LEAN_DEG: f64 = 80.0;
-/// A drag of less than this many degrees is a slip of the hand, not a rotation.
+/// Least rotation by a drag, degrees: less is a slip of the hand.
 const LEAST_TURN_DEG: f64 = 0.2;
-/// So many times the usual reach beside all wood a drawn branch may begin: 63 pixels with a mouse.
+/// Factor of the usual reach within which a drawn branch may begin off all wood: 63 pixels with a mouse.
 const BESIDE: f64 = 7.0;
-/// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (the VR paper's dead zone).
+/// Distance from the pivot, as a share of the branch, within which a drag gives no angle (the VR paper's dead zone).
 const DEAD: f64 = 0.05;
-/// A hand that pulls by so much of the branch's length, and by so many times its reach, takes it off its bearer.
+/// Pull that takes a branch off its bearer, as a share of the branch's length.
 const PULL: f64 = 0.35;
+/// Pull that takes a branch off its bearer, as a multiple of the reach.
 const PULL_REACH: f64 = 2.0;
-/// Half a turn less than this, radians, is none.
+/// Sine of half the least roll of a hand: a smaller one is rounding.
 const STEADY: f64 = 1e-9;
 
 impl Tool {
-    /// A tool that holds nothing.
+    /// Makes a tool that holds nothing.
     pub fn new(kind: ToolKind) -> Self {
         Self { kind, reach: Reach::default(), mirror: None, seed: 1, state: State::Idle }
     }
 
-    /// With another tolerance, and the seed of the next growth (each edit takes the next one).
+    /// Sets the reach and the seed of the next growth (each edit takes the next seed).
     #[must_use]
     pub const fn with(mut self, reach: Reach, seed: u64) -> Self {
         self.reach = reach;
@@ -301,34 +306,34 @@ impl Tool {
         self
     }
 
-    /// What it draws, brushes or lets grow is made on the other side of a plane, too.
+    /// Mirrors all that it draws, brushes or grows in a plane.
     #[must_use]
     pub const fn mirrored(mut self, mirror: Option<Mirror>) -> Self {
         self.mirror = mirror;
         self
     }
 
-    /// Its kind, with the settings as they are now.
+    /// Returns its kind, with the current settings.
     pub const fn kind(&self) -> ToolKind {
         self.kind
     }
 
-    /// Whether a gesture is going on.
+    /// Whether a gesture is in progress.
     pub const fn is_busy(&self) -> bool {
         !matches!(self.state, State::Idle)
     }
 
-    /// Whether a gesture is going on that moves a branch as one with all that it bears.
+    /// Whether a gesture is in progress that moves a branch rigidly with all that it bears.
     pub const fn carries(&self) -> bool {
         !matches!(self.kind, ToolKind::Copy)
             && matches!(self.state, State::Turning { .. } | State::Sliding { .. })
     }
 
-    /// How the branch in the hand is carried, where the edit so far does nothing but that; `plant`: as for
+    /// Returns the motion of the branch in the hand, if the edit so far is only that; `plant`: as for
     /// [`handle`](Self::handle).
     ///
-    /// Guaranteed: every node of the branch and of what it bears is where the edit puts it, to 1e-9 of the plant's size.
-    /// Cost: linear in the branch's bearer, old and new.
+    /// Guaranteed: every node of the branch and of all that it bears is where the edit puts it, to 1e-9 of the plant's
+    /// size. Cost: linear in the branch's bearer, old and new.
     pub fn carried(&self, plant: &Plant) -> Option<Carried> {
         match &self.state {
             _ if !self.carries() => None,
@@ -352,7 +357,8 @@ impl Tool {
         }
     }
 
-    /// On what the branch in the hand would be dropped: once it was pulled off, or where it slid onto other wood.
+    /// Returns the axis that the branch in the hand would be dropped on: once it was pulled off, or slid onto other
+    /// wood.
     pub fn host(&self) -> Option<AxisId> {
         match &self.state {
             State::Turning { off, .. } => off.map(|off| off.host),
@@ -363,7 +369,7 @@ impl Tool {
         }
     }
 
-    /// Takes one input. `plant`: as it was when the gesture began, without its preview.
+    /// Handles one input. `plant`: the plant at the start of the gesture, without its preview.
     ///
     /// Guaranteed: no input panics; a commit only on [`Input::Up`]; after `Up` and `Cancel` it holds nothing. Cost:
     /// linear in the plant on `Down`, linear in the bearer or the stroke on `Move`.
@@ -420,12 +426,12 @@ impl Tool {
         let ray = &p.ray;
         let near = pick(plant, ray, self.reach);
         let picked = near.or_else(|| {
-            // A branch that is begun in the sky grows from the wood beside it.
+            // A branch that begins in the sky grows from the wood next to it.
             let Reach { metres, per_metre, bearers } = self.reach;
             let far = Reach { metres: BESIDE * metres, per_metre: BESIDE * per_metre, bearers };
             matches!(self.kind, ToolKind::Sketch { .. }).then(|| pick(plant, ray, far)).flatten()
         });
-        let named = picked.and_then(|k| Some((k, AxisKey::of(plant, k.axis)?)));
+        let named = picked.and_then(|k| Some((k, AxisKey::for_axis(plant, k.axis)?)));
         self.state = match (self.kind, named) {
             (ToolKind::Pick, _) => State::Idle,
             (ToolKind::Rotate, Some((pick, key))) => {
@@ -438,7 +444,7 @@ impl Tool {
             }
             (ToolKind::Move | ToolKind::Copy, Some((pick, key))) => {
                 let on = plant.axis(pick.axis).bearer.map(|n| plant.nodes.axis[n.index()]);
-                let bearer = on.and_then(|axis| Some((AxisKey::of(plant, axis)?, axis)));
+                let bearer = on.and_then(|axis| Some((AxisKey::for_axis(plant, axis)?, axis)));
                 let foot = plant.axis_points(pick.axis)[0];
                 let share = on.map_or(0.0, |axis| share_of(plant, axis, foot));
                 let grabbed = on.map_or(0.0, |axis| share - share_under(plant, axis, p));
@@ -477,7 +483,7 @@ impl Tool {
         Response { picked, ..self.preview(plant) }
     }
 
-    /// The plane of a stroke: through what was picked, else through the plant's middle.
+    /// Returns the plane of a stroke: through the picked branch, else through the plant's middle.
     fn stroke(&self, plant: &Plant, p: &Pointer, named: Option<(Pick, AxisKey)>) -> Option<Stroking> {
         let corners = plant.nodes.position.iter();
         let (lo, hi) =
@@ -571,7 +577,7 @@ impl Tool {
                     }
                     (None, _) => over_ground(from, p, *foot).map(Goal::Ground),
                 };
-                // Above the horizon there is no ground: it stays where it was last.
+                // Above the horizon there is no ground: the branch stays at its last place.
                 *to = now.or(*to);
             }
             State::Clicking { .. } | State::Growing { .. } => {}
@@ -587,7 +593,7 @@ impl Tool {
         match &mut self.state {
             State::Turning { angle, .. } => *angle += by,
             State::Stroking(stroke) => {
-                // The plane turns about the stroke's last point: what is drawn already stays where it is.
+                // The plane tilts about the stroke's last point: the drawn part stays in place.
                 if let Some(&last) = stroke.points.last() {
                     stroke.through = last;
                     stroke.normal = leaned(stroke.normal, stroke.right, by);
@@ -614,7 +620,7 @@ impl Tool {
         Response { preview: self.edit(plant), commit: None, picked }
     }
 
-    /// The edit that the gesture makes so far.
+    /// Returns the edit of the gesture so far.
     fn edit(&self, plant: &Plant) -> Option<HandEdit> {
         let seed = self.seed;
         match &self.state {
@@ -622,8 +628,8 @@ impl Tool {
             State::Turning { pick, key, about, angle, off: Some(off), .. } => {
                 let held = turn_of(*about, *angle, off.turn).quat().ok()?;
                 let seat = Carried::onto(plant, pick.axis, off.host, off.share)?;
-                let to = Destination::Place { axis: AxisKey::of(plant, off.host)?, at: off.share };
-                let turn = Some(Turn::of(held * seat.turn.conjugate()));
+                let to = Destination::Place { axis: AxisKey::for_axis(plant, off.host)?, at: off.share };
+                let turn = Some(Turn::from_quat(held * seat.turn.conjugate()));
                 Some(HandEdit::Move { axis: key.clone(), to, turn })
             }
             State::Turning { key, about, angle, swing, off: None, .. } => {
@@ -636,7 +642,7 @@ impl Tool {
                     Goal::Wood(on, at) => {
                         let known =
                             bearer.as_ref().filter(|(_, axis)| *axis == on).map(|(key, _)| key.clone());
-                        Destination::Place { axis: known.or_else(|| AxisKey::of(plant, on))?, at }
+                        Destination::Place { axis: known.or_else(|| AxisKey::for_axis(plant, on))?, at }
                     }
                 };
                 let axis = key.clone();
@@ -716,7 +722,7 @@ impl Stroking {
     }
 }
 
-/// A swing, and then a turn about an axis (radians), as one turn.
+/// Combines a swing and then a rotation about an axis (radians) into one.
 fn turn_of(about: DVec3, angle: f64, swing: DQuat) -> Turn {
     if swing == DQuat::IDENTITY {
         return Turn { about, degrees: angle * (180.0 / PI) };
@@ -728,9 +734,9 @@ fn turn_of(about: DVec3, angle: f64, swing: DQuat) -> Turn {
     Turn { about: axis.normalize_or(about), degrees }
 }
 
-/// The least turn to a direction, and about that the roll of a hand that turned.
+/// Combines the least rotation to a direction with the roll of a turned hand about it.
 fn rolled(least: DQuat, turn: DQuat, along: DVec3) -> DQuat {
-    // A hand that only went there rolled nothing, and rounding is no roll.
+    // A hand that only moved there did not roll, and rounding is no roll.
     if turn.xyz().length() < STEADY {
         return least;
     }
@@ -738,15 +744,15 @@ fn rolled(least: DQuat, turn: DQuat, along: DVec3) -> DQuat {
     base::turn::about(along, 2.0 * base::ops::atan2(rest.xyz().dot(along), rest.w)) * least
 }
 
-/// The pointer in the plane of a rotation, from its pivot.
+/// Returns the pointer in the plane of a rotation, relative to its pivot.
 fn hand(p: &Pointer, pivot: DVec3, about: DVec3) -> Option<DVec3> {
     let at = p.tip.or_else(|| p.ray.meets(pivot, about))?;
     let flat = (at - pivot) - about * (at - pivot).dot(about);
     (flat.is_finite() && flat.length() > 0.0).then_some(flat)
 }
 
-/// How far the foot of a stem goes over the ground when it moves as the pointer does: wherever along the stem the pointer
-/// went down, the foot keeps its distance from it on the screen. None where that is above the horizon.
+/// Returns how far the foot of a stem moves over the ground with the pointer: wherever along the stem the pointer went
+/// down, the foot keeps its distance from it on the screen. `None` where that is above the horizon.
 fn over_ground(from: &Pointer, now: &Pointer, foot: DVec3) -> Option<DVec3> {
     if let Some((a, b)) = from.tip.zip(now.tip) {
         return Some((b - a).with_y(0.0));
@@ -755,7 +761,7 @@ fn over_ground(from: &Pointer, now: &Pointer, foot: DVec3) -> Option<DVec3> {
     let (before, after) = before.zip(after)?;
     let turned = base::turn::between(before, after) * (foot - from.ray.origin);
     let seen = now.ray.origin + turned;
-    // Rays of a front view are parallel and begin in a plane; those of an eye begin in it.
+    // Rays of a front view are parallel and begin in a plane; those of an eye begin in the eye.
     let eye = from.ray.origin.distance(now.ray.origin) <= 1e-9 * turned.length();
     let ray = Ray { origin: now.ray.origin, direction: turned };
     let ray = if eye { ray } else { Ray { origin: seen - after * turned.length(), direction: after } };
@@ -763,14 +769,14 @@ fn over_ground(from: &Pointer, now: &Pointer, foot: DVec3) -> Option<DVec3> {
     Some((at - foot).with_y(0.0))
 }
 
-/// Where a pointer meets the ground, not too far away.
+/// Returns the point where a pointer meets the ground, if not too far away.
 fn on_ground(p: &Pointer) -> Option<DVec3> {
     let at = p.ray.meets(DVec3::ZERO, DVec3::Y)?.with_y(0.0);
     let ahead = (at - p.ray.origin).dot(p.ray.direction) > 0.0;
     (ahead && at.is_finite() && at.length() < FARTHEST_M).then_some(at)
 }
 
-/// Whether a pointer is about where it went down: a copy that lies in its own branch is a slip of the hand.
+/// Whether a pointer is still about where it went down: a copy within its own branch is a slip of the hand.
 fn is_still(plant: &Plant, axis: AxisId, from: &Pointer, now: &Pointer) -> bool {
     let least = DEAD * geom::polyline_length3(plant.axis_points(axis));
     match (from.tip, now.tip) {
@@ -779,7 +785,7 @@ fn is_still(plant: &Plant, axis: AxisId, from: &Pointer, now: &Pointer) -> bool 
     }
 }
 
-/// The place on a shoot that a ray means, on none that `but` bears or is.
+/// Finds the place on a shoot that a ray means, except on `but` and on shoots that it bears.
 fn wood_under(plant: &Plant, ray: &Ray, reach: Reach, but: AxisId) -> Option<Goal> {
     let pick = pick(plant, ray, reach)?;
     let kind = plant.axis(pick.axis).kind;
@@ -787,7 +793,7 @@ fn wood_under(plant: &Plant, ray: &Ray, reach: Reach, but: AxisId) -> Option<Goa
     (other && kind.is_shoot()).then_some(Goal::Wood(pick.axis, pick.at))
 }
 
-/// The place on a shoot nearest to a point, on none that `but` bears or is.
+/// Finds the place on a shoot nearest to a point, except on `but` and on shoots that it bears.
 fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Goal> {
     let borne = plant.borne_by(but);
     let shoots = plant.axes.iter().enumerate();
@@ -808,12 +814,12 @@ fn leaned(normal: DVec3, right: DVec3, by: f64) -> DVec3 {
     (normal * c - right.cross(normal) * s).normalize_or(normal)
 }
 
-/// The share of an axis at which a point of it lies.
+/// Returns the share of an axis at which one of its points lies.
 fn share_of(plant: &Plant, axis: AxisId, at: DVec3) -> f64 {
     geom::nearest_on_polyline3(plant.axis_points(axis), at).1
 }
 
-/// The share of an axis that is nearest to a pointer.
+/// Returns the share of an axis that is nearest to a pointer.
 fn share_under(plant: &Plant, axis: AxisId, p: &Pointer) -> f64 {
     let points = plant.axis_points(axis);
     if let Some(tip) = p.tip {

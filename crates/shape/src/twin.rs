@@ -1,6 +1,6 @@
-//! Wood a second time: a copy of a branch elsewhere, and the other side of a plane of symmetry.
+//! Duplicates of wood: a copy of a branch elsewhere, and mirror images.
 //!
-//! `Draft, branch -> the branch again, with all that it bears`
+//! `Draft, branch -> a second branch, with all that it bears`
 
 use base::{Counted, Run, Seed};
 use glam::{DQuat, DVec3};
@@ -18,13 +18,13 @@ use crate::sketch_branch::own_seed;
 const COPY: u64 = 0x636f_7079;
 const MIRROR: u64 = 0x6d69_7272;
 
-/// What to do about a plant that its copies make too large.
+/// Advice for a plant that its copies make too large.
 const FEWER_COPIES: &str = "copy fewer branches, or smaller ones";
-/// A mirrored branch sits on wood that comes within this share of the plant's size of where it should begin, as what
-/// [`AxisKey::Near`] means does.
+/// Largest distance of a mirrored branch's intended base from wood that can bear it, as a share of the plant's size;
+/// the same as for [`AxisKey::Near`].
 const NEAR: f64 = 0.1;
 
-/// A copy of a branch with all that it bears. Cost: linear in the plant.
+/// Copies a branch with all that it bears. Cost: linear in the plant.
 pub(crate) fn copy(
     draft: &mut Draft,
     axis: &AxisKey,
@@ -35,7 +35,7 @@ pub(crate) fn copy(
     let goal = goal(draft, b, to)?;
     let habit = bench.habit(draft);
     let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
-    // The place may be on the branch itself, or on what it bears: it is there before the branch is copied.
+    // The place may be on the branch itself, or on a branch that it bears: it exists before the branch is copied.
     let (at, target, turn) = match goal {
         Goal::Wood(host, share) => {
             let seat = onto(draft, b, host, share);
@@ -59,11 +59,11 @@ pub(crate) fn copy(
     Ok(Changed { added, by_likeness, ..Changed::default() })
 }
 
-/// Makes the wood that an edit made (all branches from `old` on) on the other side of a plane, too.
+/// Mirrors the wood that an edit made (all branches from `old` on) in a plane.
 ///
-/// Guaranteed: each branch there is the image of its twin, carried as a whole to the wood that is nearest to where it
-/// should begin; it ends where an obstacle begins. What stands on the plane itself has no other side. Not guaranteed: that
-/// wood is there that bears it; `alone` counts the branches without.
+/// Guaranteed: each mirrored branch is the image of its twin, moved rigidly to the wood nearest to its intended base;
+/// it ends where an obstacle begins. Wood on the plane itself has no image. Not guaranteed: that there is wood to bear
+/// it; `alone` counts the branches without.
 pub(crate) fn complete(
     draft: &mut Draft,
     mirror: Mirror,
@@ -141,7 +141,7 @@ pub(crate) fn complete(
     Ok(())
 }
 
-/// The shoot of those before `old` that comes nearest to a point, and where along it.
+/// Finds the shoot among those before `old` that comes nearest to a point, and the place on it.
 fn nearest_wood(draft: &Draft, old: usize, p: DVec3, within_m: f64) -> Option<(usize, f64)> {
     let shoots = draft.branches[..old].iter().enumerate().filter(|(_, b)| b.alive && b.is_shoot());
     let near = shoots.map(|(i, b)| (geom::nearest_on_polyline3(&b.points, p), i));
@@ -149,14 +149,14 @@ fn nearest_wood(draft: &Draft, old: usize, p: DVec3, within_m: f64) -> Option<(u
     (gap <= within_m).then_some((host, share))
 }
 
-/// New branches end where an obstacle begins, with what they bear beyond.
+/// Ends new branches, with all that they bear beyond, where an obstacle begins.
 fn end_at_obstacles(draft: &mut Draft, first: usize, bench: &Bench<'_>) {
     if bench.obstacles.is_empty() {
         return;
     }
     for b in first..draft.branches.len() {
         let branch = &draft.branches[b];
-        // The first node is the bearer's.
+        // The first node belongs to the bearer.
         let from = usize::from(branch.bearer.is_some());
         let open = from + branch.points[from..].iter().take_while(|p| bench.obstacles.free(**p)).count();
         if !branch.alive || open == branch.points.len() {
@@ -182,8 +182,8 @@ fn end_at_obstacles(draft: &mut Draft, first: usize, bench: &Bench<'_>) {
 }
 
 impl Draft {
-    /// Branches again where they are, with all organs and flowers on them: new rows at the end, `fresh`, each with a key
-    /// of its own. Returns the row of each twin; what bears a branch that is not copied bears its twin, too.
+    /// Duplicates branches in place, with all organs and flowers on them: new rows at the end, `fresh`, each with a key
+    /// of its own. Returns the row of each twin; the bearer of a branch that is not copied bears its twin, too.
     fn twin(&mut self, what: &[bool], own: Seed, run: &Run<'_>) -> Result<Vec<Option<usize>>, Stop> {
         let mut rows = vec![None; self.branches.len()];
         let mut next = self.branches.len();

@@ -1,4 +1,4 @@
-//! Axes -> tubes: axes that continue one another become one tube, the others grow out of their bearers.
+//! Converts axes to tubes: axes that continue one another become one tube, the others grow out of their bearers.
 
 use base::{Cancelled, Counted, Run, Stopped, map_indexed};
 use glam::DVec3;
@@ -16,13 +16,13 @@ use crate::stub_end::{End, follow, lay_bark};
 use crate::traced::Traced;
 use crate::wind::{self, Wind, Wood};
 
-/// Which part of the model an axis belongs to.
+/// Part of the model that an axis belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Surface {
     Bark,
     /// Thin branches, still smooth.
     YoungBark,
-    /// Where a stub ends: no bark.
+    /// Face at the end of a stub: no bark.
     DeadWood,
     Stem,
     /// Green and thick: the body and arms of a cactus.
@@ -31,18 +31,18 @@ pub(crate) enum Surface {
 }
 
 impl Surface {
-    fn of(plant: &Plant, axis: &Axis) -> Self {
+    fn for_axis(plant: &Plant, axis: &Axis) -> Self {
         match axis.kind {
             AxisKind::Branch | AxisKind::Twig | AxisKind::Stub => Self::Bark,
             AxisKind::Root if on_the_ground(plant, axis) => Self::Bark,
             AxisKind::Root => Self::Root,
-            // Stem, petiole, and kinds to come that are not known to be woody.
+            // Stem, petiole, and future kinds that are not known to be woody.
             _ => Self::Stem,
         }
     }
 }
 
-/// Whether a root of a woody stem runs along the ground: in the light, with bark as the stem has it.
+/// Whether a root of a woody stem runs along the ground: in the light, with the bark of the stem.
 fn on_the_ground(plant: &Plant, root: &Axis) -> bool {
     let rows = root.nodes.start as usize..root.nodes.end as usize;
     let Some([a, .., b]) = plant.nodes.position.get(rows) else { return false };
@@ -64,14 +64,14 @@ struct Chain {
     /// A leaf stalk: thin and one of many.
     stalk: bool,
     root: bool,
-    /// What is left of a branch.
+    /// The remains of a branch.
     stub: bool,
-    /// Roots leave its foot.
+    /// Whether roots leave its foot.
     rooted: bool,
 }
 
 impl Chain {
-    /// Neither a root nor what is left of a branch.
+    /// Whether it is neither a root nor the remains of a branch.
     fn is_shoot(&self) -> bool {
         !self.root && !self.stub
     }
@@ -82,48 +82,48 @@ impl Chain {
 pub(crate) struct Tube {
     pub surface: Surface,
     pub traced: bool,
-    /// The axes that it is of, in order.
+    /// Its axes, in order.
     pub axes: Vec<AxisId>,
     pub mesh: TriMesh,
 }
 
-/// What bears a chain: a chain, and the sample of its spine.
+/// Bearer of a chain: a chain, and the sample of its spine.
 type Host = (usize, usize);
 
-/// Where an axis lies: its chain, and the number of its first node among the chain's points.
+/// Position of an axis: its chain, and the index of its first node among the chain's points.
 type Place = (usize, usize);
 
-// Tubes are made in groups of this many: one job each would cost more than the tube.
+// Number of tubes in a group: one job each would cost more than the tube.
 const GROUP: usize = 16;
 
-// Branches thinner than this share of the thickest are young: no plates yet.
+// Share of the thickest branch's radius below which branches are young: no plates yet.
 const YOUNG: f64 = 0.12;
-// A plant whose thickest branch is thinner than this share of its size has no old wood.
+// Share of the plant's size below which its thickest branch means that it has no old wood.
 const SLENDER: f64 = 0.02;
 
-// How much wider than above a trunk is at the ground, and how high up in its radii: where roots leave it, and without.
+// Widening of a trunk at the ground, and its height in radii: where roots leave it, and without.
 const SKIRT: (f64, f64) = (0.6, 3.5);
 const COLLAR: (f64, f64) = (0.25, 2.0);
 
-// The share of its way that a root on the ground rises or falls at most: 20 degrees.
+// Largest slope of a root on the ground, as a share of its length: 20 degrees.
 const LEVEL: f64 = 0.35;
 
-// Sides of a tube with ribs: two for each of as many as there can be.
+// Sides of a tube with ribs: two for each of the greatest number of ribs.
 const MOST_SIDES: u32 = 64;
 
-// How high bark is pushed up in a crotch, over the spread of the fillet.
+// Height of the bark ridge in a crotch, relative to the spread of the fillet.
 const RIDGE: f64 = 0.25;
 
-// Sides of the rim of a hollow at least: one looks at it and into it.
+// Least number of sides of the rim of a hollow, which is seen from near by.
 const ROUND: u32 = 18;
 
-// Below this detail ribs are painted alone.
+// Detail below which ribs are only painted.
 const COARSE: f64 = 0.3;
 
-// Green axes thicker than this share of the plant's size are bodies, not stems.
+// Share of the plant's size above which green axes are bodies, not stems.
 const FLESHY: f64 = 0.035;
 
-/// The tubes of every axis, in the order of the axes; and the wind in them, if it is asked for.
+/// Makes the tubes of every axis, in the order of the axes; and the wind in them, if requested.
 ///
 /// # Errors
 /// [`Stopped`].
@@ -146,7 +146,7 @@ pub(crate) fn tubes<'p>(
         .map(|(i, s)| s.as_ref().map_or(3, |s| budget.sides(s.r[0], least(i))))
         .collect();
     let (ribs, sides, faces) = ribbed(&chains, &spines, spec, thickest, sides);
-    // Circles for every number of sides that can occur: 3 to 24, and more of what has ribs.
+    // Circles for every possible number of sides: 3 to 24, and more for tubes with ribs.
     let most = if ribs.iter().any(|r| r.count > 0) { MOST_SIDES } else { 24 };
     let circles: Vec<Circle> = (0..=most).map(Circle::new).collect();
     let borne_by = |chain: &Chain| {
@@ -196,7 +196,7 @@ pub(crate) fn tubes<'p>(
         let least = wind.as_ref().map_or(0.0, |w| w.rows(i, spine));
         let rows = rows(budget, &chains[i], spine.length()).max(least);
         let bare = budget.unseen(spine.stoutest()) && !bears[i];
-        let ends = if bare { Ends::bare(rows) } else { Ends::of(rows, sides[i]) };
+        let ends = if bare { Ends::bare(rows) } else { Ends::divide(rows, sides[i]) };
         let reach = reaches[i];
         let (line, first) = drawn(spine, reach.as_ref(), ends.rings, |radius| budget.tolerance(radius));
         let planes = if bears[i] { planes(&line, first) } else { Vec::new() };
@@ -208,7 +208,7 @@ pub(crate) fn tubes<'p>(
         2 * u64::from(*sides) * rows
     });
     run.budget.check(Counted::Triangles, sleeves.sum(), crate::FEWER)?;
-    let coloured = Coloured::of(plant);
+    let coloured = Coloured::new(plant);
     let openings = Vec::new();
     let mut all = All {
         plant,
@@ -231,7 +231,7 @@ pub(crate) fn tubes<'p>(
     Ok((tubes.into_iter().flatten().flatten().flatten().collect(), all.wind))
 }
 
-/// What the tubes of all chains are made of; rows by chain.
+/// Input for the tubes of all chains; rows by chain.
 struct All<'a, 'p> {
     plant: &'p Plant,
     budget: &'a Budget,
@@ -239,7 +239,7 @@ struct All<'a, 'p> {
     spines: Vec<Option<Spine>>,
     lines: Vec<Option<Line>>,
     hosts: Vec<Option<Host>>,
-    /// The sides as which each counts for what grows out of it.
+    /// Number of sides that each presents to its branches.
     faces: Vec<u32>,
     thickest: f64,
     traced: Option<&'a Traced>,
@@ -250,7 +250,7 @@ struct All<'a, 'p> {
 }
 
 impl All<'_, '_> {
-    /// The tube of a chain, and the face of a stub.
+    /// Makes the tube of a chain, and the face of a stub.
     fn tubes_of(&self, i: usize, circle: &Circle, ribs: Ribs) -> Option<[Option<Tube>; 2]> {
         let (chain, spine, line) = (&self.chains[i], self.spines[i].as_ref()?, self.lines[i].as_ref()?);
         let bearer = self.hosts[i].and_then(|(host, sample)| {
@@ -269,7 +269,7 @@ impl All<'_, '_> {
             (chain.stub && !end.is_broken(), line.reach, self.hosts[i])
             && let Some(host) = &self.spines[host]
         {
-            let at = host.at(reach.on);
+            let at = host.station_at(reach.on);
             let scale = f64::from(self::repeats(host, self.thickest)) / (base::ops::TAU * at.radius);
             lay_bark(&mut mesh, &reach.exit, &at, scale);
         }
@@ -301,13 +301,13 @@ impl All<'_, '_> {
         self.openings.iter().any(|(rim, ..)| *rim == i)
     }
 
-    /// The rims of stems that are hollow behind them.
+    /// Finds the rims of stems that are hollow behind them.
     fn find_openings(&self) -> Vec<(usize, usize, Opening)> {
         let of = |i: usize| {
             let (chain, spine, line) = (&self.chains[i], self.spines[i].as_ref()?, self.lines[i].as_ref()?);
             let End::Rim(_) = end(self.plant, chain, spine, line) else { return None };
             let (host, reach) = (self.hosts[i]?.0, line.reach.as_ref()?);
-            let stem = self.spines[host].as_ref()?.at(reach.on);
+            let stem = self.spines[host].as_ref()?.station_at(reach.on);
             let key = self.plant.axis(*chain.axes.first()?).key;
             // The foot of a stem is drawn wider than it grew.
             let grown = *self.plant.nodes.radius_m.get(chain.bearer?.index())?;
@@ -319,13 +319,14 @@ impl All<'_, '_> {
         let others =
             |i: usize, host: usize| found.iter().filter(move |(rim, on, _)| *rim != i && *on == host);
         let beside = |&(i, host, opening): &(usize, usize, Opening)| {
-            (i, host, others(i, host).fold(opening, |opening, (.., other)| opening.beside(other)))
+            (i, host, others(i, host).fold(opening, |opening, (.., other)| opening.crowded_by(other)))
         };
         found.iter().map(beside).collect()
     }
 }
 
-/// What a chain is made of, as thick as it is beside the thickest and the whole plant. Roots are as old as the stem.
+/// Returns the surface of a chain, by its thickness relative to the thickest and to the whole plant. Roots are as old
+/// as the stem.
 fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
     match chain.surface {
         Surface::Bark
@@ -338,8 +339,8 @@ fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surf
     }
 }
 
-/// By chain: its ribs, the sides that they take, and those as which its surface counts for what grows out of it, for which a
-/// furrow is as deep as a flat face.
+/// Returns for each chain its ribs, the sides that they take, and the number of sides that its surface presents to its
+/// branches, for which a furrow is as deep as a flat face.
 fn ribbed(
     chains: &[Chain],
     spines: &[Option<Spine>],
@@ -349,7 +350,7 @@ fn ribbed(
 ) -> (Vec<Ribs>, Vec<u32>, Vec<u32>) {
     let ribs: Vec<Ribs> =
         chains.iter().zip(spines).map(|(c, s)| ribs(c, s.as_ref(), spec, thickest)).collect();
-    // A rib takes four corners, or two where the whole is coarse.
+    // A rib takes four corners, or two at coarse detail.
     let of_rib = if spec.detail >= 0.8 { 4 } else { 2 };
     let of = |(sides, r): (u32, &Ribs)| if r.count > 0 { (of_rib * r.count).min(MOST_SIDES) } else { sides };
     let sides: Vec<u32> = sides.into_iter().zip(&ribs).map(of).collect();
@@ -358,7 +359,7 @@ fn ribbed(
     (ribs, sides, faces)
 }
 
-/// The ribs of a chain: of thick stems, where they are asked for and are not too fine to be drawn.
+/// Returns the ribs of a chain: for thick stems, if they are requested and not too fine to be drawn.
 fn ribs(chain: &Chain, spine: Option<&Spine>, spec: &SkinSpec, thickest: f64) -> Ribs {
     let bark = spec.bark.unwrap_or_default();
     let thick = spine.is_some_and(|s| s.stout() > YOUNG * thickest);
@@ -368,7 +369,7 @@ fn ribs(chain: &Chain, spine: Option<&Spine>, spec: &SkinSpec, thickest: f64) ->
     Ribs { count: bark.ribs.min(32), depth: bark.rib_depth.clamp(0.0, 0.5) }
 }
 
-/// What chain `i` grows out of: where it begins while its bearer is still inside the next thicker one, that.
+/// Returns the bearer of chain `i`: if it begins while its bearer is still inside the next thicker one, that one.
 fn outermost(
     i: usize,
     spines: &[Option<Spine>],
@@ -388,7 +389,7 @@ fn outermost(
     Some(found)
 }
 
-/// [`map_indexed`] in groups, with a look at the cancel flag before each.
+/// As [`map_indexed`], in groups, with a check for cancellation before each.
 fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Cancelled> {
     let groups = map_indexed(run.executor, n.div_ceil(GROUP), |g| {
         run.cancel.check()?;
@@ -401,7 +402,7 @@ fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> R
     Ok(out)
 }
 
-/// Rows of a tube: of its fillet, between its ends, of its tip.
+/// Rows of a tube: of its fillet, between its ends, and of its tip.
 #[derive(Clone, Copy, Debug)]
 struct Ends {
     steps: u32,
@@ -410,13 +411,13 @@ struct Ends {
 }
 
 impl Ends {
-    /// Of a last twig that is thinner than what can be seen: as few rows as its course takes.
+    /// Returns the rows of a last twig that is too thin to be seen: as few as its course takes.
     fn bare(rows: f64) -> Self {
         Self { steps: 0, rings: (rows - 2.0).max(2.0), tip: 0 }
     }
 
-    /// Shares out the rows of a tube with so many sides.
-    fn of(rows: f64, sides: u32) -> Self {
+    /// Divides the rows of a tube with this number of sides.
+    fn divide(rows: f64, sides: u32) -> Self {
         // A thick tube's tip is large enough to show its corners.
         let round = if sides > 12 { 4 } else { 2 };
         // Small twigs spend fewer rows on their ends, so that some are left for the middle; limbs get more of them.
@@ -427,32 +428,33 @@ impl Ends {
     }
 }
 
-/// A chain as it is drawn: what bears others, straight between rings.
+/// A chain as drawn: bearers are straight between rings.
 #[derive(Debug)]
 struct Line {
     line: Spine,
-    /// The number of its first ring.
+    /// Index of its first ring.
     first: usize,
-    /// How its rings stand; empty of what bears nothing.
+    /// Planes of its rings; empty if it bears nothing.
     planes: Vec<DVec3>,
     reach: Option<Reach>,
     ends: Ends,
 }
 
 impl Line {
-    /// As what bears a branch at an arc length.
+    /// Returns it as the bearer of a branch at an arc length.
     fn bearer(&self, s: f64, sides: u32) -> Bearer<'_> {
         let [exit, top] = self.reach.map_or([0.0; 2], |r| [r.exit.s, r.top]);
         Bearer { spine: &self.line, sample: self.line.piece(s), sides, exit, top, planes: &self.planes }
     }
 }
 
-/// How often bark repeats around a branch: three times around the thickest, so that its ridges are of like size on all.
+/// Returns the repetitions of bark around a branch: three around the thickest, so that its ridges have similar size on
+/// all.
 fn repeats(spine: &Spine, thickest: f64) -> u32 {
     base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3)
 }
 
-/// How a chain ends.
+/// Returns the end of a chain.
 fn end(plant: &Plant, chain: &Chain, spine: &Spine, line: &Line) -> End {
     let Some((&last, &axis)) = spine.r.last().zip(chain.axes.first()).filter(|_| chain.stub) else {
         return End::Round;
@@ -461,8 +463,8 @@ fn end(plant: &Plant, chain: &Chain, spine: &Spine, line: &Line) -> End {
     End::of_stub(plant.axis(axis).key, beyond, spine.stout(), last)
 }
 
-/// One tube: fillet or flat base, rings, and its end. Also the number of the fillet's rows below the first ring, and what of the
-/// end has no bark.
+/// Makes one tube: fillet or flat base, rings, and its end. Also returns the number of the fillet's rows below the
+/// first ring, and the part of the end without bark.
 fn sleeve(
     line: &Line,
     bearer: Option<&Bearer<'_>>,
@@ -485,7 +487,7 @@ fn sleeve(
         steps as usize + 1
     });
     if fillet.is_none() {
-        // It ends inside the bearer: so it starts where that is drawn.
+        // It ends inside the bearer, so it starts where that is drawn.
         if let Some(bearer) = bearer {
             rings[0].centre = bearer.spine.nearest(rings[0].centre, bearer.sample).0.centre;
         }
@@ -497,13 +499,13 @@ fn sleeve(
     (mesh, fillet, face)
 }
 
-/// Rings of a chain; stalks make do with a third.
+/// Returns the rings of a chain; stalks get a third.
 fn rows(budget: &Budget, chain: &Chain, length: f64) -> f64 {
     let rows = budget.rings(length);
     if chain.stalk { (0.35 * rows).max(4.0) } else { rows }
 }
 
-/// Groups axes that continue their bearer's tip; also says where each axis went.
+/// Groups axes that continue their bearer's tip; also returns the position of each axis.
 fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
     let n = plant.axes.len();
     let heir = heirs(plant);
@@ -524,7 +526,7 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
         let mut chain = Chain {
             axes: vec![id],
             bearer: axis.bearer,
-            surface: Surface::of(plant, axis),
+            surface: Surface::for_axis(plant, axis),
             stalk: axis.kind == AxisKind::Petiole,
             root: axis.kind == AxisKind::Root,
             stub: axis.kind == AxisKind::Stub,
@@ -534,7 +536,7 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
         let mut offset = axis.nodes.len();
         let mut tip = i;
         while let Some(next) = heir[tip] {
-            // The heir's first node is the bearer's last: it stands for both.
+            // The heir's first node coincides with the bearer's last, which represents both.
             places[next] = (chains.len(), offset - 1);
             offset += plant.axes[next].nodes.len() - 1;
             chain.axes.push(AxisId::new(next));
@@ -545,25 +547,27 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
     (chains, places)
 }
 
-/// For each axis the one that continues it: borne by its last node, of the same surface, not turning away by
+/// Returns for each axis the one that continues it: borne by its last node, of the same surface, not turning away by
 /// more than 65 degrees, the thickest and straightest of them.
 fn heirs(plant: &Plant) -> Vec<Option<usize>> {
     let mut heir: Vec<Option<(f64, usize)>> = vec![None; plant.axes.len()];
     for (i, axis) in plant.axes.iter().enumerate() {
         let Some(bearer) = axis.bearer else { continue };
         let Some(&host) = plant.nodes.axis.get(bearer.index()) else { continue };
-        // A bearer comes before what it bears: chains cannot close to a ring.
+        // A bearer comes before its branches: chains cannot close to a ring.
         if host.index() >= i || plant.axis(host).nodes.end as usize != bearer.index() + 1 {
             continue;
         }
-        if Surface::of(plant, plant.axis(host)) != Surface::of(plant, axis) || axis.nodes.len() < 2 {
+        if Surface::for_axis(plant, plant.axis(host)) != Surface::for_axis(plant, axis)
+            || axis.nodes.len() < 2
+        {
             continue;
         }
         let (a, b) = (end_direction(plant, host), start_direction(plant, AxisId::new(i)));
         let cos = a.dot(b);
         let radius = plant.axis_radii(AxisId::new(i)).first().copied().unwrap_or(0.0);
         let tip = plant.axis_radii(host).last().copied().unwrap_or(0.0);
-        // cos 65 degrees; and a thin stalk on a stout end is a stalk, not the stem going on.
+        // cos 65 degrees; and a thin stalk on a stout end is a stalk, not the continuation of the stem.
         if cos < 0.42 || radius < 0.45 * tip {
             continue;
         }
@@ -583,7 +587,7 @@ fn end_direction(plant: &Plant, id: AxisId) -> DVec3 {
     -direction(plant.axis_points(id).iter().rev())
 }
 
-/// From the first point to the first one that differs.
+/// Returns the direction from the first point to the first one that differs.
 fn direction<'a>(mut points: impl Iterator<Item = &'a DVec3>) -> DVec3 {
     let Some(&a) = points.next() else { return DVec3::Y };
     points.find_map(|&b| (b - a).try_normalize()).unwrap_or(DVec3::Y)
@@ -608,7 +612,7 @@ fn spine(plant: &Plant, chain: &Chain, budget: &Budget) -> Option<Spine> {
     }
     let length = geom_length(&points);
     let rows = rows(budget, chain, length);
-    // A branch leaves a little in its bearer's direction before it takes its own.
+    // A branch leaves slightly in its bearer's direction before it takes its own.
     let first = chain.bearer.and_then(|node| {
         let host = *plant.nodes.axis.get(node.index())?;
         let range = &plant.axis(host).nodes;

@@ -1,4 +1,4 @@
-//! Blade -> triangles: a constrained Delaunay sheet, lifted and bent, with the texture along its midrib.
+//! Meshes a blade: a constrained Delaunay sheet, lifted and bent, with the texture along its midrib.
 
 use glam::{DVec2, DVec3};
 use mesh::TriMesh;
@@ -6,17 +6,17 @@ use plant::Blade;
 
 use crate::sleeve::{drop_flat, narrow2};
 
-// With fewer triangles than this, veins other than the midrib would leave slivers only.
+// Number of triangles below which veins other than the midrib would only leave slivers.
 const VEINS_FROM: f64 = 100.0;
 
-/// The surface of a leaf or petal in its own frame (metres at scale 1), one layer, in about `triangles`
-/// triangles (8 to 20,000).
+/// Meshes a leaf or petal in its own frame (metres at scale 1), one layer, in about `triangles` triangles (8 to
+/// 20,000).
 ///
-/// Guaranteed: the boundary follows the outline at the edge length of the triangles; edges lie along the midrib,
-/// and along further veins where there are 100 triangles or more, so that folds crease there; triangles wind
-/// counter-clockwise seen from the upper side; unit normals, smooth; u in 0..1 with one half on the midrib, v in
-/// 0..1 from the highest point of the outline (0) to the lowest (1). Empty where the outline has no area.
-/// Not guaranteed: the exact count; the number of triangles is within about a quarter of the wish.
+/// Guaranteed: the boundary follows the outline at the edge length of the triangles; edges lie along the midrib, and
+/// along further veins if there are 100 triangles or more, so that folds crease there; triangles wind counter-clockwise
+/// seen from the upper side; unit normals, smooth; u in 0..1 with one half on the midrib, v in 0..1 from the highest
+/// point of the outline (0) to the lowest (1). Empty if the outline has no area. Not guaranteed: the exact count; the
+/// number of triangles is within about a quarter of the wish.
 pub fn blade_mesh(blade: &Blade, triangles: f64) -> TriMesh {
     let area = geom::signed_area(&blade.outline).abs();
     let around = closed_length(&blade.outline);
@@ -24,8 +24,8 @@ pub fn blade_mesh(blade: &Blade, triangles: f64) -> TriMesh {
     let Some(edge) = edge_length(area, around, wanted) else {
         return TriMesh::default();
     };
-    // The margin alone makes a triangle of each of its edges: a bundle of needles, which is all margin, would get
-    // many times what was wished for.
+    // The margin alone makes a triangle of each of its edges: a bundle of needles, which is all margin, would get far
+    // more than requested.
     let edge = edge.max(around / wanted);
     let creases = if triangles >= VEINS_FROM { usize::MAX } else { 1 };
     let lines: Vec<&[DVec2]> = blade.lines().take(creases).map(Vec::as_slice).collect();
@@ -56,10 +56,10 @@ pub(crate) fn closed_length(outline: &[DVec2]) -> f64 {
     (0..n).map(|i| outline[i].distance(outline[(i + 1) % n])).fold(0.0, |sum, d| sum + d)
 }
 
-/// The edge length at which a blade has about `triangles` triangles.
+/// Returns the edge length at which a blade has about `triangles` triangles.
 ///
-/// A hexagonal lattice of spacing e has 2.31 / e2 triangles per area; along the boundary a strip holds no inner
-/// points, its triangles are larger. Solved for 1/e.
+/// A hexagonal lattice of spacing e has 2.31 / e2 triangles per area; a strip along the boundary contains no inner
+/// points, so its triangles are larger. Solved for 1/e.
 fn edge_length(area: f64, around: f64, triangles: f64) -> Option<f64> {
     if !(area.is_finite() && around.is_finite() && area > 1e-9 * around * around) {
         return None;
@@ -73,7 +73,7 @@ fn edge_length(area: f64, around: f64, triangles: f64) -> Option<f64> {
 const LATTICE: f64 = 2.31;
 const STRIP: f64 = 0.39;
 
-// Steps along the midrib at which its x is kept.
+// Steps along the midrib at which its x is stored.
 const STEPS: u32 = 32;
 
 /// Texture coordinates of a blade: u from its midrib (0.5) to its widest place (0 and 1), v from tip (0) to root.
@@ -102,7 +102,7 @@ pub struct BladeChart {
 }
 
 impl BladeChart {
-    /// The chart of a blade. Cost: linear in its outline.
+    /// Makes the chart of a blade. Cost: linear in its outline.
     pub fn new(blade: &Blade) -> Self {
         let (low, high) =
             blade.outline.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.y), b.max(p.y)));
@@ -123,21 +123,21 @@ impl BladeChart {
         base::ops::lerp(self.midrib[k], self.midrib[k + 1], at - whole)
     }
 
-    /// Where a point of the blade's plane is in its texture, 0 to 1 each.
+    /// Returns the position in the texture of a point of the blade's plane, 0 to 1 each.
     pub fn uv(&self, p: DVec2) -> DVec2 {
         let u = 0.5 + 0.5 * (p.x - self.middle(p.y)) / self.half_width;
         let v = 1.0 - (p.y - self.low) / self.height;
         DVec2::new(u, v).clamp(DVec2::ZERO, DVec2::ONE)
     }
 
-    /// The point of the blade's plane at a place of its texture.
+    /// Returns the point of the blade's plane at a position in its texture.
     pub fn place(&self, uv: DVec2) -> DVec2 {
         let y = self.low + (1.0 - uv.y) * self.height;
         DVec2::new(self.middle(y) + (2.0 * uv.x - 1.0) * self.half_width, y)
     }
 }
 
-/// The x of a line at height `y`: its first crossing, or its nearer end.
+/// Returns the x of a line at height `y`: its first crossing, or its nearer end.
 fn x_at(line: &[DVec2], y: f64) -> f64 {
     let crossing = line.windows(2).find(|w| (w[0].y <= y) != (w[1].y <= y));
     match crossing {

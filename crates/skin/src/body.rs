@@ -1,4 +1,4 @@
-//! Discs, fruits, stamens, thorns -> triangles in their own frames.
+//! Meshes discs, fruits, stamens and thorns in their own frames.
 
 use base::ops;
 use glam::{DVec2, DVec3};
@@ -8,10 +8,10 @@ use crate::sleeve::{Circle, drop_flat, narrow, narrow2, wide};
 use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
 use crate::tube::{TubeSpec, tube};
 
-/// Points of a bent body's line for each that it was given: enough to look round.
+/// Samples of a bent body's line for each given point: enough to look round.
 const BENDS: usize = 4;
 
-/// Columns that grow together.
+/// Columns of a mesh under construction.
 #[derive(Default)]
 struct Columns(TriMesh);
 
@@ -21,28 +21,28 @@ impl Columns {
         self.0.push(p)
     }
 
-    /// Two triangles between columns `j` and `j + 1` of the rows that start at `a` and `b`.
+    /// Adds two triangles between columns `j` and `j + 1` of the rows that start at `a` and `b`.
     fn quad(&mut self, a: u32, b: u32, j: u32) {
         self.0.triangles.push([a + j, a + j + 1, b + j]);
         self.0.triangles.push([a + j + 1, b + j + 1, b + j]);
     }
 }
 
-/// A disc: a dome of florets around +z, closed below by the receptacle. About `triangles` triangles.
+/// Makes a disc: a dome of florets around +z, closed below by the receptacle. About `triangles` triangles.
 pub(crate) fn dome(radius: f64, height: f64, triangles: f64) -> TriMesh {
     let sides = ops::whole((1.5 * triangles).sqrt().round().clamp(8.0, 64.0));
     let rows = (sides / 3).max(3);
     let circle = Circle::new(sides);
     let mut out = Columns::default();
     let at = |q: f64, (cos, sin): (f64, f64)| {
-        // Florets stand uneven; the rim keeps its place.
+        // Florets are uneven; the rim keeps its place.
         let rough = 0.05 * radius * unevenness(q * cos, q * sin) * (1.0 - q * q);
         let swell = (1.0 - q * q).max(0.0).sqrt() * (1.0 - 0.18 * (1.0 - q) * (1.0 - q));
         DVec3::new(radius * q * cos, radius * q * sin, height * swell + rough)
     };
     let apex = out.vertex(at(0.0, (1.0, 0.0)), (0.5, 0.5));
     for k in 1..=rows {
-        // Even steps of the angle: rows crowd at the rim, where the dome is steep.
+        // Even steps of the angle: rows are denser at the rim, where the dome is steep.
         let q = ops::sin(ops::FRAC_PI_2 * f64::from(k) / f64::from(rows));
         for &(cos, sin) in &circle.0[..sides as usize] {
             out.vertex(at(q, (cos, sin)), (0.5 + DISC_RADIUS * q * cos, 0.5 - DISC_RADIUS * q * sin));
@@ -58,7 +58,7 @@ pub(crate) fn dome(radius: f64, height: f64, triangles: f64) -> TriMesh {
             out.0.triangles.push([a + j, b + next, a + next]);
         }
     }
-    // The receptacle: a shallow cup below, green, with vertices of its own for the hard rim.
+    // The receptacle: a shallow green cup below, with vertices of its own for the hard rim.
     let depth = 0.55 * height.abs().max(0.4 * radius);
     let rim = out.0.positions.len();
     for &corner in &circle.0[..sides as usize] {
@@ -81,7 +81,7 @@ pub(crate) fn dome(radius: f64, height: f64, triangles: f64) -> TriMesh {
     out.0
 }
 
-/// A body of revolution around +y; with `ribs` the skin is fluted, as a cactus's is.
+/// Makes a body of revolution around +y; with `ribs` the skin is fluted, as in a cactus.
 pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMesh {
     let line = generating_line(profile, triangles);
     if line.len() < 2 {
@@ -128,7 +128,7 @@ pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMes
     out.0
 }
 
-/// A body along a line with a radius at each of its points, as [`revolution`] is about an axis.
+/// Makes a body along a line with a radius at each of its points, as [`revolution`] does about an axis.
 pub(crate) fn bent(path: &[DVec3], radii: &[f64], triangles: f64, ribs: u32) -> TriMesh {
     let line = geom::catmull_rom(path, BENDS);
     let frames = geom::rotation_minimising_frames(&line, None);
@@ -148,7 +148,7 @@ pub(crate) fn bent(path: &[DVec3], radii: &[f64], triangles: f64, ribs: u32) -> 
         let (a, b) = (&frames[k - 1], &frames[k]);
         let along = a.tangent.lerp(b.tangent, t).normalize_or(DVec3::Y);
         let side = a.normal.lerp(b.normal, t).reject_from(along).normalize_or_zero();
-        // Right-handed, as x, y and z of the straight body are.
+        // Right-handed, like x, y and z of the straight body.
         (a.origin.lerp(b.origin, t), side, along, side.cross(along))
     };
     for (p, n) in mesh.positions.iter_mut().zip(&mut mesh.normals) {
@@ -160,7 +160,7 @@ pub(crate) fn bent(path: &[DVec3], radii: &[f64], triangles: f64, ribs: u32) -> 
     mesh
 }
 
-/// The profile, smooth and with few enough points; from the lower to the upper pole.
+/// Returns the profile, smooth and with few enough points; from the lower to the upper pole.
 fn generating_line(profile: &[DVec2], triangles: f64) -> Vec<DVec2> {
     let mut points: Vec<DVec3> = Vec::with_capacity(profile.len());
     for p in profile.iter().filter(|p| p.is_finite()) {
@@ -184,14 +184,14 @@ fn generating_line(profile: &[DVec2], triangles: f64) -> Vec<DVec2> {
     geom::resample3(&smooth, step).iter().map(|p| DVec2::new(p.x.max(0.0), p.y)).collect()
 }
 
-/// Smooth normals that agree along the seam and at the poles.
+/// Computes smooth normals that agree along the seam and at the poles.
 fn smooth_seam(mesh: &mut TriMesh, rows: &[u32], sides: u32) {
     mesh.compute_normals();
     for &row in rows {
         let (a, b) = (row as usize, (row + sides) as usize);
         let same = (1..sides as usize).all(|j| mesh.positions[a + j] == mesh.positions[a]);
         let n = if same {
-            // A pole: every copy looks along the axis.
+            // A pole: every copy points along the axis.
             DVec3::Y * if row == rows[0] { -1.0 } else { 1.0 }
         } else {
             (wide(mesh.normals[a]) + wide(mesh.normals[b])).try_normalize().unwrap_or(DVec3::Y)
@@ -202,9 +202,9 @@ fn smooth_seam(mesh: &mut TriMesh, rows: &[u32], sides: u32) {
     }
 }
 
-/// A strand with a closed end and, for `knob > 0`, a ball at it. The texture's upper half (v below one half) is
-/// the ball's, the lower half the strand's, its foot at v = 1; without a ball the whole texture is the
-/// strand's, its foot at v = 0.
+/// Makes a strand with a closed end and, for `knob > 0`, a ball at it. The texture's upper half (v below one half) is
+/// the ball's, the lower half the strand's, its foot at v = 1; without a ball the whole texture is the strand's, its
+/// foot at v = 0.
 pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> TriMesh {
     let (sides, rings) = if fine { (4, 4) } else { (4, 3) };
     let mut mesh = tube(path, radii, &TubeSpec { sides, rings, repeats: 1 });
@@ -221,7 +221,7 @@ pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> Tr
     mesh
 }
 
-/// A strand with six sides, a ring at each of its points and flat ends: the same triangles however it bends.
+/// Makes a strand with six sides, a ring at each of its points and flat ends: the same triangles for any bend.
 pub(crate) fn rod(path: &[DVec3], radii: &[f64]) -> TriMesh {
     const SIDES: u32 = 6;
     let mut out = Columns::default();
@@ -257,7 +257,7 @@ pub(crate) fn rod(path: &[DVec3], radii: &[f64]) -> TriMesh {
     out.0
 }
 
-/// The fewest triangles that show a strand: a closed prism of eight, from its first point to its last.
+/// Makes a strand of the fewest triangles: a closed prism of eight, from its first point to its last.
 pub(crate) fn prism(path: &[DVec3], radii: &[f64]) -> TriMesh {
     let mut out = Columns::default();
     let (Some(&root), Some(&end)) = (path.first(), path.last()) else { return out.0 };
@@ -283,7 +283,7 @@ pub(crate) fn prism(path: &[DVec3], radii: &[f64]) -> TriMesh {
     out.0
 }
 
-/// A ball, a little longer along its axis, for anthers and stigmas.
+/// Makes a ball, slightly longer along its axis, for anthers and stigmas.
 fn ball(centre: DVec3, axis: DVec3, radius: f64, sides: u32) -> TriMesh {
     let circle = Circle::new(sides);
     let across = axis.any_orthonormal_vector();
@@ -361,7 +361,7 @@ mod tests {
             .iter()
             .map(|&[a, b, c]| mesh.position(a).dot(mesh.position(b).cross(mesh.position(c))))
             .sum();
-        // Between a third and all of the cone's volume: flat sides, and those of unlike ends are not quite flat.
+        // Between a third and all of the cone's volume: flat sides, and sides between unlike ends are not quite flat.
         let cone = path[1].length() / 3.0 * ops::PI * (0.01 * 0.01 + 0.01 * 0.03 + 0.03 * 0.03);
         assert!((0.33..1.0).contains(&(six / 6.0 / cone)), "{} of {cone}", six / 6.0);
         assert!(prism(&path, &[0.01, f64::NAN]).triangles.is_empty() && prism(&[], &[]).triangles.is_empty());

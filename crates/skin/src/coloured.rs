@@ -1,4 +1,4 @@
-//! Axes that know their colours -> colours of the vertices of their tubes.
+//! Colours the vertices of tubes by the colours of their axes.
 
 use mesh::TriMesh;
 use plant::{AxisId, Plant};
@@ -6,10 +6,10 @@ use plant::{AxisId, Plant};
 use crate::sleeve::wide;
 use crate::spine::Spine;
 
-/// The green of stems whose colour nothing tells, linear.
+/// Default green of stems, linear.
 const GREEN: [f32; 3] = [0.18, 0.30, 0.07];
 
-/// Whether axes of a plant have colours of their own.
+/// Whether some axes of a plant have colours of their own.
 pub(crate) fn is_coloured(plant: &Plant) -> bool {
     plant.axes.iter().any(|a| !a.colors.is_empty())
 }
@@ -18,12 +18,12 @@ pub(crate) fn is_coloured(plant: &Plant) -> bool {
 pub(crate) struct Coloured<'a>(&'a Plant);
 
 impl<'a> Coloured<'a> {
-    /// None of a plant without such an axis.
-    pub(crate) fn of(plant: &'a Plant) -> Option<Self> {
+    /// Returns `None` for a plant without such an axis.
+    pub(crate) fn new(plant: &'a Plant) -> Option<Self> {
         is_coloured(plant).then_some(Self(plant))
     }
 
-    /// The colours of the vertices of the tube of axes that follow one another; of an axis without its own that of stems.
+    /// Colours the vertices of the tube of consecutive axes; an axis without colours gets that of stems.
     pub(crate) fn tube(&self, mesh: &mut TriMesh, axes: &[AxisId], spine: &Spine) {
         let lengths: Vec<f64> = axes.iter().map(|&a| geom::polyline_length3(self.0.axis_points(a))).collect();
         let whole = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
@@ -32,7 +32,7 @@ impl<'a> Coloured<'a> {
         for p in &mesh.positions {
             let (station, near) = spine.nearest(wide(*p), hint);
             hint = near;
-            // The way along the nodes: the smooth line is a little longer.
+            // The length along the nodes: the smooth line is slightly longer.
             let mut way = station.s / spine.length().max(f64::MIN_POSITIVE) * whole;
             let mut row = 0;
             while row + 1 < axes.len() && way > lengths[row] {
@@ -40,16 +40,16 @@ impl<'a> Coloured<'a> {
                 row += 1;
             }
             let share = way / lengths.get(row).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
-            let color = axes.get(row).map_or(GREEN, |&a| self.at(a, share));
+            let color = axes.get(row).map_or(GREEN, |&a| self.colour_at(a, share));
             mesh.colors.push(color);
         }
     }
 
-    /// The colour of an axis at a share of its length.
-    fn at(&self, axis: AxisId, share: f64) -> [f32; 3] {
+    /// Returns the colour of an axis at a share of its length.
+    fn colour_at(&self, axis: AxisId, share: f64) -> [f32; 3] {
         let colors = &self.0.axis(axis).colors;
         let Some(last) = colors.len().checked_sub(1) else { return self.0.paint.stem.unwrap_or(GREEN) };
-        // Each stands for an equal part, and is its colour in the middle of it.
+        // Each represents an equal part, and is its colour at the centre.
         let at = (share * colors.len() as f64 - 0.5).clamp(0.0, last as f64);
         let at = if at.is_finite() { at } else { 0.0 };
         let k = (base::ops::whole(at) as usize).min(last);

@@ -13,15 +13,15 @@ use plant::{Frame, Organ, OrganId, Plant};
 use crate::layout::{Layout, Owner};
 use crate::sleeve::{narrow, wide};
 
-/// Fewer than this are no gain.
+/// Least number of copies that save anything.
 const FEW: usize = 8;
 
-/// Takes the organs out of a model that are copies of one another: of the same form, in one colour each. `layout` says what
-/// lies where in the model, which is of `plant` ([`crate::skin_laid_out`]).
+/// Removes the organs from a model that are copies of one another: of the same form, in one colour each. `layout` gives
+/// the contents of the parts of the model, which is of `plant` ([`crate::skin_laid_out`]).
 ///
-/// Guaranteed: what is left and [`Copies::flattened`] together are the model's triangles, corners to a few millionths of the
-/// plant's size; each copy once. Not guaranteed: their order. Models with wind are left whole: there each vertex has numbers
-/// of its own. Cost: linear in vertices.
+/// Guaranteed: the rest and [`Copies::flattened`] together are the model's triangles, corners to a few millionths of
+/// the plant's size; each copy once. Not guaranteed: their order. Models with wind are unchanged: there each vertex has
+/// numbers of its own. Cost: linear in vertices.
 pub fn copies(plant: &Plant, model: &Model, layout: &Layout) -> (Model, Vec<Copies>) {
     let mut rest = Model { parts: Vec::new(), ..model.clone() };
     let mut all = Vec::new();
@@ -57,7 +57,7 @@ pub fn copies(plant: &Plant, model: &Model, layout: &Layout) -> (Model, Vec<Copi
     (rest, all)
 }
 
-/// Which pieces of a part are copies, and these.
+/// Finds the pieces of a part that are copies.
 fn of_part(
     plant: &Plant,
     part: &Part,
@@ -107,7 +107,7 @@ fn of_part(
     (taken, found)
 }
 
-/// Whether a frame turns and nothing else.
+/// Whether a frame is a pure rotation.
 fn square(f: &Frame) -> bool {
     const NEARLY: f64 = 1e-6;
     let unit = |v: DVec3| (v.length_squared() - 1.0).abs() < NEARLY;
@@ -118,20 +118,20 @@ fn square(f: &Frame) -> bool {
         && f.origin.is_finite()
 }
 
-/// The triangles of a range with their vertices alone, in the order of these.
+/// Returns the triangles of a range with only their vertices, in the order of these.
 fn piece(mesh: &TriMesh, range: &Range<usize>) -> TriMesh {
     let triangles = mesh.triangles.get(range.clone()).unwrap_or_default();
     let corners = || triangles.iter().flatten().copied();
     let (low, high) = (corners().min().unwrap_or(0), corners().max().map_or(0, |m| m + 1));
     let rows = low as usize..high as usize;
-    fn of<T: Copy>(column: &[T], rows: &Range<usize>) -> Vec<T> {
+    fn copy_rows<T: Copy>(column: &[T], rows: &Range<usize>) -> Vec<T> {
         column.get(rows.clone()).unwrap_or_default().to_vec()
     }
     TriMesh {
-        positions: of(&mesh.positions, &rows),
-        normals: of(&mesh.normals, &rows),
-        uvs: of(&mesh.uvs, &rows),
-        colors: of(&mesh.colors, &rows),
+        positions: copy_rows(&mesh.positions, &rows),
+        normals: copy_rows(&mesh.normals, &rows),
+        uvs: copy_rows(&mesh.uvs, &rows),
+        colors: copy_rows(&mesh.colors, &rows),
         triangles: triangles.iter().map(|t| t.map(|i| i - low)).collect(),
         ..TriMesh::default()
     }

@@ -1,4 +1,4 @@
-//! Where a branch leaves its bearer: a fillet from the bearer's surface to the branch's own tube.
+//! Forks: a fillet from the bearer's surface to the branch's own tube.
 
 use glam::DVec3;
 
@@ -12,19 +12,18 @@ pub(crate) struct Bearer<'a> {
     pub spine: &'a Spine,
     /// The sample at which the branch starts, or the last one before it.
     pub sample: usize,
-    /// Sides of the bearer's tube: its flat faces lie deeper than its radius.
+    /// Sides of the bearer's tube, whose flat faces lie deeper than its radius.
     pub sides: u32,
-    /// The arc lengths from which on the bearer is to be seen, outside of its own bearer, and up to which it is a fillet
+    /// Arc lengths from which on the bearer is visible, outside of its own bearer, and up to which it is a fillet
     /// itself.
     pub exit: f64,
     pub top: f64,
-    /// How the rings at the samples of the spine stand as they are drawn: askew where it turns at once; empty of a smooth
-    /// line, whose rings stand upright on it.
+    /// Normals of the rings at the samples of the spine as drawn: oblique at sharp turns; empty for a smooth line,
+    /// whose rings are perpendicular to it.
     pub planes: &'a [DVec3],
 }
 
-/// The rows of a fillet: `rows` x (sides + 1) corners and normals, from foot to top; the top row is the tube's
-/// first ring.
+/// Rows of a fillet: `rows` x (sides + 1) corners and normals, from foot to top; the top row is the tube's first ring.
 #[derive(Debug, Default)]
 pub(crate) struct Collar {
     pub corners: Vec<DVec3>,
@@ -34,28 +33,29 @@ pub(crate) struct Collar {
     inside: DVec3,
 }
 
-// A fillet's rows may lie this much deeper than the line's radius says.
+// Largest depth of a fillet's rows below the line's radius, as a share of it.
 const HOLLOW: f64 = 0.25;
 
-// Pieces beyond the nearest among which the cross-section through a place is looked for, and halvings that find it in its piece.
+// Pieces beyond the nearest in the search for the cross-section through a point, and halvings that find it in its
+// piece.
 const FARTHEST: usize = 6;
 const HALVINGS: usize = 24;
 
-// Below its fillet a bearer is not drawn: of what lies there only its middle is sure to be inside the wood that it leaves.
+// Share of the radius that certainly lies inside a bearer below its fillet, where it is not drawn.
 const BELOW: f64 = 0.1;
 
-// A branch that runs along its bearer leaves it only far out; from this sine on its fillet is cut short.
+// Sine of the angle below which a fillet is cut short: a branch that runs along its bearer leaves it only far out.
 const SHALLOWEST: f64 = 0.22;
 
-// A fillet runs straight to the branch's first ring. Where the branch turns away from that line by more than this cosine
-// (35 degrees), the ring would stand askew in it and make a flat band of it, beside what the branch bears there.
+// Least cosine between a fillet, which runs straight to the branch's first ring, and the branch (35 degrees): beyond it
+// the ring would be oblique and make a flat band of the fillet, next to what the branch bears there.
 const STRAIGHT: f64 = 0.82;
 
-// In radii of the branch, the least height of a fillet: where it turns at once, it turns in its rings.
+// Least height of a fillet, in radii of the branch: sharp turns happen in its rings.
 const LOWEST: f64 = 0.6;
 
-/// Where the centre line of `branch` leaves its bearer, and the bearer's station there; `None` where it never does (it
-/// ends inside).
+/// Returns the point where the centre line of `branch` leaves its bearer, and the bearer's station there; `None` if it
+/// never does (it ends inside).
 fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station)> {
     let mut hint = bearer.sample;
     let mut depth = |p: DVec3| {
@@ -73,8 +73,8 @@ fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station)> {
         found.then_some((k, here))
     })?;
     let station = |(_, s, piece): (f64, f64, usize)| bearer.spine.station(piece, s);
-    let Some(mut inside) = inside else { return Some((branch.at(0.0), station(outside))) };
-    // Samples are coarser than bearers are thick: false position (Illinois) narrows down where the surface lies.
+    let Some(mut inside) = inside else { return Some((branch.station_at(0.0), station(outside))) };
+    // Samples are coarser than bearers are thick: false position (Illinois) finds the surface.
     let (mut a, mut b) = (branch.s[k - 1], branch.s[k]);
     for _ in 0..4 {
         let s = b - (b - a) * (outside.0 / (outside.0 - inside)).clamp(0.0, 1.0);
@@ -90,13 +90,13 @@ fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station)> {
     Some((branch.station(k - 1, b), station(outside)))
 }
 
-/// Where the fillet of `branch` on its bearer lies; `None` where the branch ends inside.
+/// Returns the position of the fillet of `branch` on its bearer; `None` if the branch ends inside.
 pub(crate) fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
     let (exit, at) = exit(branch, bearer)?;
     let cos = exit.tangent.dot(at.tangent);
     let sin = (1.0 - cos * cos).max(0.0).sqrt().max(SHALLOWEST);
-    // On a thick bearer the fillet is as long as the branch is thick; on one of like thickness it may take 1.2
-    // of the bearer's radius.
+    // On a thick bearer the fillet is as long as the branch is thick; on one of similar thickness it may take 1.2 of
+    // the bearer's radius.
     let length = 1.2 * at.radius.min(2.2 * exit.radius);
     let top = exit.s + exit.radius * cos.abs() / sin + length;
     let room = branch.length() - exit.s;
@@ -104,7 +104,7 @@ pub(crate) fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
     Some(Reach { exit, on: at.s, top })
 }
 
-/// The arc length, `top` at most, up to which a branch goes on straight enough from where it leaves its bearer.
+/// Returns the arc length, at most `top`, up to which a branch continues straight enough after it leaves its bearer.
 fn straight(branch: &Spine, exit: &Station, top: f64) -> f64 {
     let least = exit.s + LOWEST * exit.radius;
     let mut straight = least;
@@ -123,14 +123,14 @@ fn straight(branch: &Spine, exit: &Station, top: f64) -> f64 {
 }
 
 impl Collar {
-    /// The fillet of a branch on its bearer, with `steps` rows between its foot and the branch's first ring, `top`.
+    /// Makes the fillet of a branch on its bearer, with `steps` rows between its foot and the branch's first ring,
+    /// `top`.
     ///
-    /// Its foot lies on the bearer's surface, sunk just below the flat faces, with the bearer's normals: light
-    /// passes from one to the other without an edge. Where the bearer is given as it is drawn, the foot reaches it
-    /// even if the smooth line runs elsewhere.
+    /// Its foot lies on the bearer's surface, sunk just below the flat faces, with the bearer's normals: shading passes
+    /// from one to the other without an edge. If the bearer is given as drawn, the foot reaches it even if the smooth
+    /// line runs elsewhere.
     ///
-    /// `ridge` is the height of the ridge of bark that is pushed up between the two on the upper side, over how far the foot
-    /// spreads.
+    /// `ridge` is the height of the bark ridge between the two on the upper side, relative to the spread of the foot.
     pub(crate) fn new(
         reach: &Reach,
         top: &Ring,
@@ -140,9 +140,9 @@ impl Collar {
     ) -> Self {
         let at = &reach.exit;
         let (axis, hint) = bearer.spine.nearest(at.centre, bearer.sample);
-        // Seen from the top ring, the branch comes from where it left the bearer.
+        // Seen from the top ring, the branch comes from its exit on the bearer.
         let back = (at.centre - top.centre).try_normalize().unwrap_or(-top.tangent);
-        // How far the foot spreads along the bearer's surface, beyond where the bare tube would meet it.
+        // Spread of the foot along the bearer's surface, beyond its intersection with the bare tube.
         let spread = 0.8 * top.radius.min(axis.radius);
         let width = circle.sides() + 1;
         let mut collar = Self {
@@ -157,11 +157,11 @@ impl Collar {
             let knee = bearer.surface(hit(q, back, &axis), hint);
             let out = (ray - knee.1 * ray.dot(knee.1)).normalize_or_zero();
             let foot = bearer.below(knee.0 + out * spread, hint);
-            // Highest in the crotch, and gone half-way round.
+            // Highest in the crotch, and zero half-way round.
             let hollow = (foot.0 + q - knee.0 * 2.0).normalize_or_zero();
             let raised = hollow * (ridge * spread * out.dot(axis.tangent).max(0.0));
             for k in 0..=steps + 1 {
-                // Even steps of the parameter crowd a little at the knee, where the fillet turns.
+                // Even steps of the parameter are slightly denser at the knee, where the fillet turns.
                 let u = f64::from(k) / f64::from(steps + 1);
                 let (a, b, c) = ((1.0 - u) * (1.0 - u), 2.0 * u * (1.0 - u), u * u);
                 let ridge = raised * (b * b * 4.0);
@@ -170,7 +170,7 @@ impl Collar {
             collar.normals[j] = foot.1;
             collar.normals[width * (steps as usize + 1) + j] = top.normal(ray);
         }
-        // The last corner of each row is its first.
+        // The last corner of each row equals its first.
         for row in
             [&mut collar.corners, &mut collar.normals].into_iter().flat_map(|c| c.chunks_exact_mut(width))
         {
@@ -194,8 +194,8 @@ impl Collar {
         }
     }
 
-    /// Writes every row but the last, which is the tube's first ring; and the base that closes it, unless the bearer is open
-    /// there.
+    /// Writes every row except the last, which is the tube's first ring; and the base that closes it, unless the bearer
+    /// is open there.
     pub(crate) fn write(&self, out: &mut Sleeve<'_>, radius: f64, closed: bool) {
         let rows = self.corners.len() / self.width - 1;
         for k in 0..rows {
@@ -212,12 +212,12 @@ impl Collar {
 }
 
 impl Bearer<'_> {
-    /// The point of the bearer's surface nearest to `p`, and the normal there.
+    /// Returns the point of the bearer's surface nearest to `p`, and the normal there.
     fn surface(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
         self.shrunk(p, hint, |_| 1.0)
     }
 
-    /// The same point sunk just below the flat faces, or below the rows of the bearer's own fillet.
+    /// Returns the same point sunk just below the flat faces, or below the rows of the bearer's own fillet.
     fn below(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
         let faces = base::ops::cos(base::ops::PI / f64::from(self.sides.max(3))) * 0.97;
         self.shrunk(p, hint, |s| match s {
@@ -227,7 +227,8 @@ impl Bearer<'_> {
         })
     }
 
-    /// The point of the surface in the cross-section through `p`, whose radius is a share, by arc length, of the bearer's.
+    /// Returns the point of the surface in the cross-section through `p`, whose radius is a share, by arc length, of
+    /// the bearer's.
     fn shrunk(&self, p: DVec3, hint: usize, share: impl Fn(f64) -> f64) -> (DVec3, DVec3) {
         let (near, piece) = self.spine.nearest(p, hint);
         let (at, plane) = self.section(p, piece).unwrap_or((near, near.tangent));
@@ -237,8 +238,8 @@ impl Bearer<'_> {
         (at.centre + ray * (at.radius * share(at.s)), (ray - at.tangent * at.slope).normalize())
     }
 
-    /// The cross-section through `p` of the tube as it is drawn, between rings that stand askew: where on the line it is, and
-    /// its normal. Looked for from a piece on; `None` before the first ring and beyond the last.
+    /// Returns the cross-section through `p` of the tube as drawn, between oblique rings: its position on the line, and
+    /// its normal. Searched from a piece on; `None` before the first ring and beyond the last.
     fn section(&self, p: DVec3, piece: usize) -> Option<(Station, DVec3)> {
         let plane = |k: usize, u: f64| {
             let (a, b) = (self.planes.get(k)?, self.planes.get(k + 1)?);
@@ -261,7 +262,7 @@ impl Bearer<'_> {
         if plane(k, low)?.0 < 0.0 || plane(k, high)?.0 > 0.0 {
             return None;
         }
-        // On which side of the plane at u of the piece p lies: the sign of a square function of u.
+        // Side of the plane at u of the piece on which p lies: the sign of a quadratic function of u.
         let (from, to) = (p - self.spine.p[k], self.spine.p[k + 1] - self.spine.p[k]);
         let (a, turn) = (self.planes[k], self.planes[k + 1] - self.planes[k]);
         let [c0, c1, c2] = [from.dot(a), from.dot(turn) - to.dot(a), to.dot(turn)];
@@ -279,7 +280,8 @@ impl Bearer<'_> {
     }
 }
 
-/// Where the line from `q` along `d` meets the cylinder of a station first; its nearest point where it passes.
+/// Returns the first intersection of the line from `q` along `d` with the cylinder of a station; its nearest point if
+/// it misses.
 fn hit(q: DVec3, d: DVec3, cylinder: &Station) -> DVec3 {
     let square = |v: DVec3| v - cylinder.tangent * v.dot(cylinder.tangent);
     let (w, a) = (square(q - cylinder.centre), square(d));
@@ -319,7 +321,7 @@ mod tests {
                 assert!(r < 0.1 * base::ops::cos(base::ops::PI / 8.0), "angle {angle}: foot at {r}");
             }
             let top = &collar.corners[collar.corners.len() - collar.width..];
-            let clear = (rings[0].centre - trunk.at(1.0).centre).length() > 0.1;
+            let clear = (rings[0].centre - trunk.station_at(1.0).centre).length() > 0.1;
             assert!(clear && top.iter().all(|p| p.is_finite()), "angle {angle}: top at {}", rings[0].centre);
         }
     }

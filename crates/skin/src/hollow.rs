@@ -2,8 +2,8 @@
 //!
 //! `rim on a stem -> Opening -> a hole in the bark of the stem, a mesh of dead wood`
 //!
-//! Around a hole that rots into a stem the living wood swells to a roll, and behind it the cavity is wider than its mouth, mostly
-//! upwards and downwards along the grain (Shigo, A New Tree Biology, 1986).
+//! Around a hole that rots into a stem the living wood swells to a roll, and behind it the cavity is wider than its
+//! mouth, mostly upwards and downwards along the grain (Shigo, A New Tree Biology, 1986).
 
 use std::collections::BTreeMap;
 
@@ -15,20 +15,21 @@ use crate::rings::Ring;
 use crate::sleeve::{Circle, Sleeve, narrow, wide};
 use crate::spine::Station;
 
-/// A rim as thick as this share of its stem, or more, is a hollow's; smaller ones are knots. Growth makes knots of up to 0.26
+/// Least thickness of a hollow's rim as a share of its stem; thinner ones are knots. Growth makes knots of up to 0.26
 /// and hollows from 0.28 on.
 const HOLLOW: f64 = 0.27;
-/// How deep a cavity goes into the wood, in radii of the stem: from, and to.
+/// Least and greatest depth of a cavity in the wood, in radii of the stem.
 const DEEP: [f64; 2] = [0.5, 0.78];
-/// In radii of the stem: of two hollows that lie nearer along it both are as shallow as there are, so that they do not meet.
+/// Distance of two hollows along a stem, in radii of the stem, below which both have the least depth, so that they do
+/// not meet.
 const CROWDED: f64 = 3.0;
-/// Below this detail, that of the first coarser level, a stem is not opened.
+/// Detail, that of the first coarser level, below which a stem is not opened.
 const COARSE: f64 = 0.4;
 
-/// How wide the mouth is, in radii of the rim.
+/// Radius of the mouth, in radii of the rim.
 pub(crate) const MOUTH: f64 = 0.7;
-/// The rows of a cavity from its mouth on: shares of the way to the bark and from there to its end; half its width across the
-/// stem and along it, in radii of the rim.
+/// Rows of a cavity from its mouth on: shares of the distance to the bark and from there to its end; half its width
+/// across the stem and along it, in radii of the rim.
 const ROWS: [(f64, f64, f64, f64); 6] = [
     (0.0, 0.0, MOUTH, MOUTH),
     (0.55, 0.0, 0.6, 0.64),
@@ -37,47 +38,48 @@ const ROWS: [(f64, f64, f64, f64); 6] = [
     (1.0, 0.7, 0.62, 1.1),
     (1.0, 0.93, 0.35, 0.65),
 ];
-/// The first row of [`ROWS`] that is uneven, and by how much it is narrower in places: what rots is not turned on a lathe.
+/// First row of [`ROWS`] that is uneven, and its narrowing in places: rot is irregular.
 const UNEVEN: (usize, f64) = (2, 0.3);
-/// The share of the wood's width at a depth that a cavity takes at most.
+/// Largest share of the wood's width at a depth that a cavity takes.
 const WALL: f64 = 0.85;
-/// How the normals of the mouth lean, as those of the roll of bark do there.
+/// Lean of the normals of the mouth, equal to that of the roll of bark there.
 const LEAN: f64 = 2.4;
-/// How much darker it is for each radius of depth: the power of e. By eye; light that is reflected within is not computed.
+/// Exponential darkening for each radius of depth. By eye; interreflection is not computed.
 const GLOOM: f64 = 0.8;
 
-/// Near a hollow edges are cut until they are shorter than this, in radii of the rim.
+/// Longest edge near a hollow, in radii of the rim.
 const FINE: f64 = 0.35;
-/// Within so many radii of the rim's middle.
+/// Distance from the rim's centre within which edges are cut, in its radii.
 const NEAR: f64 = 1.3;
-/// What lies within so many is taken away: the mouth is narrower, and the foot of the rim lies at 1.8.
+/// Distance from the rim's centre within which the bark is removed, in its radii: the mouth is narrower, and the foot
+/// of the rim lies at 1.8.
 const CUT: f64 = 1.05;
-/// In radii of the stem, how far behind the bark the same is done: not on the other side.
+/// Depth behind the bark to which this applies, in radii of the stem: not on the far side.
 const BEHIND: f64 = 0.6;
-/// Halvings of an edge at most: of a stretch of 300 radii.
+/// Most halvings of an edge: for a stretch of 300 radii.
 const ROUNDS: usize = 10;
 
 /// A hollow in a stem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Opening {
-    /// Where its middle is on the bark.
+    /// Position of its centre on the bark.
     bark: DVec3,
-    /// Out of the stem, along the stem and across both.
+    /// Directions out of the stem, along the stem and across both.
     out: DVec3,
     up: DVec3,
     side: DVec3,
-    /// Of the rim, metres.
+    /// Radius of the rim, metres.
     radius: f64,
-    /// Of the stem, metres.
+    /// Radius of the stem, metres.
     stem: f64,
-    /// How deep the cavity is behind the bark, metres.
+    /// Depth of the cavity behind the bark, metres.
     deep: f64,
     key: u64,
 }
 
 impl Opening {
-    /// Of a rim with such a key that leaves a stem at stations of its own and of the stem; `None` of one so small that nothing
-    /// behind it rotted, by its thickness over that of the stem as it grew, and where all is drawn coarsely.
+    /// Makes the hollow of a rim with a key, given the stations of the rim and of the stem; `None` if the rim is too
+    /// thin, relative to the stem as it grew, for rot behind it, and at coarse detail.
     pub(crate) fn new(rim: &Station, stem: &Station, (key, share): (u64, f64), detail: f64) -> Option<Self> {
         let out = rim.tangent;
         let up = (stem.tangent - out * stem.tangent.dot(out)).try_normalize()?;
@@ -96,13 +98,13 @@ impl Opening {
         })
     }
 
-    /// Makes it as shallow as there are if another one of the same stem is near.
-    pub(crate) fn beside(self, other: &Self) -> Self {
+    /// Reduces it to the least depth if another one of the same stem is near.
+    pub(crate) fn crowded_by(self, other: &Self) -> Self {
         let near = self.bark.distance(other.bark) < CROWDED * self.stem.max(other.stem);
         Self { deep: if near { DEEP[0] * self.stem } else { self.deep }, ..self }
     }
 
-    /// The cavity behind the last ring of its rim, darker the deeper: dead wood that faces the mouth.
+    /// Makes the cavity behind the last ring of its rim, darker with depth: dead wood that faces the mouth.
     pub(crate) fn cavity(&self, last: &Ring, circle: &Circle) -> TriMesh {
         let mut mesh = TriMesh::default();
         let mut out = Sleeve::new(&mut mesh, circle, 1);
@@ -112,7 +114,7 @@ impl Opening {
         for (k, &(above, below, across, along)) in ROWS.iter().enumerate() {
             let centre = last.centre - self.out * back((above, below));
             let depth = below * self.deep;
-            // Wood is left on both sides of it: the stem is round.
+            // Wood remains on both sides of it: the stem is round.
             let chord = WALL * (depth * (2.0 * self.stem - depth)).max(0.0).sqrt();
             let most = if k >= UNEVEN.0 { chord / self.radius } else { across };
             let size = DVec2::new(across.min(most), along) * self.radius;
@@ -133,12 +135,12 @@ impl Opening {
         mesh
     }
 
-    /// Normals of a cavity, and its light by depth.
+    /// Sets the normals of a cavity, and its light by depth.
     fn shade(&self, mesh: &mut TriMesh, last: &Ring, circle: &Circle) {
         mesh.compute_normals();
         let width = circle.sides() + 1;
         for row in mesh.normals[..width * ROWS.len()].chunks_exact_mut(width) {
-            // The last corner of each row is its first.
+            // The last corner of each row equals its first.
             let both = narrow((wide(row[0]) + wide(row[width - 1])).normalize_or(self.out));
             (row[0], row[width - 1]) = (both, both);
         }
@@ -158,7 +160,7 @@ impl Opening {
         mesh.colors = mesh.positions.iter().map(light).collect();
     }
 
-    /// Takes the bark behind the rim away. All columns of the mesh go on; what is left of it keeps its order.
+    /// Removes the bark behind the rim. All columns of the mesh are kept; the rest keeps its order.
     pub(crate) fn cut(&self, mesh: &mut TriMesh) {
         for _ in 0..ROUNDS {
             let mut middles = BTreeMap::new();
@@ -183,16 +185,17 @@ impl Opening {
         drop_unused(mesh);
     }
 
-    /// Across and along the stem from the middle of the rim, and how far out of the bark there.
+    /// Returns the position across and along the stem relative to the centre of the rim, and the distance out of the
+    /// bark.
     fn local(&self, p: DVec3) -> (DVec2, f64) {
         let d = p - self.bark;
         (DVec2::new(d.dot(self.side), d.dot(self.up)), d.dot(self.out))
     }
 
-    /// The vertex in the middle of an edge that is too long. What is too long follows from the places of its ends alone, so that
-    /// pieces meet along the seam of a tube, too.
+    /// Returns the vertex in the middle of an edge that is too long. The decision follows from the positions of its
+    /// ends alone, so that pieces meet along the seam of a tube, too.
     ///
-    /// Of a triangle that holds the middle of the rim the nearest edge is no farther than half of its length: it is always found.
+    /// If a triangle contains the centre of the rim, its nearest edge is within half of its length: it is always found.
     fn middle(
         &self,
         mesh: &mut TriMesh,
@@ -209,7 +212,7 @@ impl Opening {
     }
 }
 
-/// The new vertex half-way between two.
+/// Adds the vertex half-way between two.
 fn halved(mesh: &mut TriMesh, a: usize, b: usize) -> u32 {
     fn mean<const N: usize>(column: &mut Vec<[f32; N]>, a: usize, b: usize) {
         if let (Some(p), Some(q)) = (column.get(a).copied(), column.get(b)) {
@@ -230,19 +233,19 @@ fn halved(mesh: &mut TriMesh, a: usize, b: usize) -> u32 {
     new
 }
 
-/// A triangle with the middles of some of its sides, from its first corner on, as triangles that have them as corners.
+/// Splits a triangle at the middles of some of its sides, from its first corner on.
 fn split([a, b, c]: [u32; 3], halves: [Option<u32>; 3], pieces: &mut Vec<[u32; 3]>) {
     match halves {
         [None, None, None] => pieces.push([a, b, c]),
         [Some(m), None, None] => pieces.extend([[a, m, c], [m, b, c]]),
         [Some(m), Some(n), None] => pieces.extend([[m, b, n], [a, m, n], [a, n, c]]),
         [Some(m), Some(n), Some(o)] => pieces.extend([[a, m, o], [m, b, n], [o, n, c], [m, n, o]]),
-        // The others are these, turned.
+        // The other cases are these, rotated.
         [m, n, o] => split([b, c, a], [n, o, m], pieces),
     }
 }
 
-/// Drops the vertices that no triangle has.
+/// Removes the vertices that no triangle uses.
 fn drop_unused(mesh: &mut TriMesh) {
     let mut used = vec![false; mesh.positions.len()];
     for i in mesh.triangles.iter().flatten() {
@@ -276,12 +279,12 @@ mod tests {
     use plant::{AxisKind, Plant};
 
     const STEM: f64 = 0.3;
-    /// How far rims stand out: the same of all, as the rings of the stem follow from what axes there are.
+    /// Height of rims: the same for all, as the rings of the stem depend on its axes.
     const OUT: f64 = 0.035;
-    /// A stub as thin ends round.
+    /// Radius of a stub that ends round.
     const THIN: f64 = 0.02;
 
-    /// A stem, and on it rims of such radii at such heights and angles, as growth leaves them.
+    /// Makes a stem with rims of these radii, heights and angles, as growth does.
     fn stem(rims: &[(f64, f64, f64)]) -> Plant {
         let mut plant = Plant::default();
         let line: Vec<DVec3> = (0..=40).map(|k| DVec3::Y * (0.1 * f64::from(k))).collect();
@@ -308,7 +311,7 @@ mod tests {
         model
     }
 
-    /// How far a ray goes until it meets a model.
+    /// Returns the distance at which a ray meets a model.
     fn first_hit(model: &mesh::Model, from: DVec3, way: DVec3) -> f64 {
         let hits = model.parts.iter().flat_map(|part| {
             part.mesh.triangles.iter().filter_map(|t| {
@@ -360,7 +363,7 @@ mod tests {
             let place = |p: DVec3| narrow(p).map(|x| (x + 0.0).to_bits());
             let mut sides = BTreeMap::new();
             let mesh = &model.parts[0].mesh;
-            // The stem comes first: what of the bark lies out of it is the rim.
+            // The stem comes first: the part of the bark outside it is the rim.
             for t in mesh.triangles.iter().map(|t| t.map(|i| mesh.position(i))) {
                 for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
                     *sides.entry([place(a).min(place(b)), place(a).max(place(b))]).or_insert(0) +=
@@ -372,7 +375,7 @@ mod tests {
             for p in open.into_iter().flatten().map(|p| wide(p.map(f32::from_bits))) {
                 assert!(p.distance(middle) < 2.2 * radius, "{p} {middle}");
             }
-            // What is far from it is as it was.
+            // Parts far from it are unchanged.
             let whole = &skinned(&stem(&[(THIN, 2.0, angle)]), 1.0).parts[0].mesh;
             let far = |p: &&[f32; 3]| wide(**p).distance(middle) > 0.8;
             let kept: Vec<_> = mesh.positions.iter().filter(far).collect();
@@ -396,7 +399,7 @@ mod tests {
 
     #[test]
     fn a_hollow_in_the_flare_of_the_foot_is_one_too() {
-        // The foot is drawn wider than it grew, so that the rim is narrow beside it.
+        // The foot is drawn wider than it grew, so that the rim is narrow compared with it.
         let model = skinned(&stem(&[(0.28 * STEM, 0.3, 0.0)]), 1.0);
         let deep = first_hit(&model, DVec3::new(2.0, 0.3, 0.0), -DVec3::X);
         assert!(deep > 2.0 - 0.6 * STEM, "{deep}");

@@ -1,12 +1,12 @@
-//! Where a branch lies in the parts of a model: what is in the hand is moved, not made again.
+//! Position of a branch in the parts of a model: while the user drags it, its triangles are moved, not made again.
 //!
-//! `parts as they are put together -> triangles of each axis and organ -> triangles of a branch with all that it bears`
+//! `assembled parts -> triangles of each axis and organ -> triangles of a branch with all that it bears`
 
 use core::ops::Range;
 
 use plant::{AxisId, NodeId, OrganId, Plant};
 
-/// Triangles of a part that belong together, in their order.
+/// Consecutive triangles of a part that belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
     of: Of,
@@ -16,7 +16,7 @@ pub(crate) struct Piece {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Of {
     Axis(AxisId),
-    /// Axes that continue one another are one tube.
+    /// Consecutive axes that form one tube.
     Chain(Box<[AxisId]>),
     Organ(u32),
 }
@@ -35,7 +35,7 @@ impl Piece {
     }
 }
 
-/// What of a plant lies where in the parts of its model.
+/// Position of the axes and organs of a plant in the parts of its model.
 ///
 /// ```
 /// use glam::DVec3;
@@ -57,7 +57,7 @@ pub struct Layout {
     parts: Vec<Vec<Piece>>,
 }
 
-/// What a run of triangles belongs to.
+/// Owner of consecutive triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner<'a> {
     /// One tube along these axes, each of which continues the one before.
@@ -67,7 +67,7 @@ pub enum Owner<'a> {
 }
 
 impl Layout {
-    /// What the triangles of each part belong to, in their order: an owner, and how many of them it has.
+    /// Iterates over the owners of the triangles of each part, in their order, with their numbers of triangles.
     pub fn owners(&self) -> impl Iterator<Item = impl Iterator<Item = (Owner<'_>, u32)>> {
         fn owner(p: &Piece) -> Owner<'_> {
             match &p.of {
@@ -83,11 +83,11 @@ impl Layout {
         self.parts.push(pieces.cloned().collect());
     }
 
-    /// The triangles of a branch and of all that it bears, as ranges of each part, ascending and apart. `plant`: the one that
-    /// the model is of.
+    /// Returns the triangles of a branch and of all that it bears, as ranges of each part, ascending and disjoint.
+    /// `plant`: the one that the model is of.
     ///
-    /// `None` where the branch goes on a tube that does not belong to it as a whole: then nothing can be moved alone. Cost:
-    /// linear in the plant.
+    /// `None` if the branch is part of a tube that does not belong to it as a whole: then nothing can be moved alone.
+    /// Cost: linear in the plant.
     pub fn branch(&self, plant: &Plant, axis: AxisId) -> Option<Vec<Vec<Range<u32>>>> {
         if axis.index() >= plant.axes.len() {
             return None;
@@ -130,7 +130,7 @@ impl Layout {
         self.parts.iter().map(of_part).collect()
     }
 
-    /// About how many bytes it takes.
+    /// Returns its approximate size in bytes.
     pub fn bytes(&self) -> usize {
         self.parts.iter().map(|p| size_of_val(p.as_slice())).sum()
     }

@@ -1,4 +1,4 @@
-//! Blades that are surfaces -> triangles: tubes of the veins, grid of the blade, at any resolution.
+//! Meshes blades that are surfaces: tubes of the veins, grid of the blade, at any resolution.
 
 use geom::{BallBSpline, BallTubeSpec, KdTree, subdivided};
 use glam::DVec3;
@@ -10,13 +10,13 @@ use crate::sleeve::{narrow, narrow2, wide};
 
 /// The triangles of one shape, in its own frame.
 ///
-/// Of a leaf of N rows of marks with the default [`LeafMeshSpec`] the veins have `10 (36 N + 1)` vertices and `350 N`
-/// quads, the blade `(5 N + 1) * 31` vertices and `150 N` quads (Wang et al. 2011, Table 1). Triangles are two a quad, but one
-/// at the tip, where a row of the blade is one point. A blade with a margin of its own is of triangles; they are counted instead
-/// of quads.
+/// For a leaf of N rows of marks with the default [`LeafMeshSpec`] the veins have `10 (36 N + 1)` vertices and `350 N`
+/// quads, the blade `(5 N + 1) * 31` vertices and `150 N` quads (Wang et al. 2011, Table 1). A quad has two triangles,
+/// but one at the tip, where a row of the blade is one point. A blade with a margin of its own consists of triangles,
+/// which are then counted instead of quads.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMesh {
-    /// Its surface; of a leaf the blade.
+    /// Its surface; for a leaf the blade.
     pub surface: TriMesh,
     /// The veins of a measured leaf; empty for other shapes.
     pub veins: TriMesh,
@@ -26,7 +26,7 @@ pub struct ShapeMesh {
     pub blade_faces: usize,
     /// Rings whose ball lies inside its neighbours; only with [`geom::RingRule::Envelope`].
     pub swallowed: usize,
-    /// Rings at which a vein is thicker than it bends, so that its surface cuts itself.
+    /// Rings at which a vein is thicker than it bends, so that its surface intersects itself.
     pub crossing: usize,
 }
 
@@ -36,7 +36,7 @@ impl From<TriMesh> for ShapeMesh {
     }
 }
 
-/// A measured leaf. Cost: linear in its triangles.
+/// Meshes a measured leaf. Cost: linear in its triangles.
 pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh {
     let steps = spec.subdivisions.clamp(1, 64);
     let mut out = ShapeMesh::default();
@@ -52,10 +52,10 @@ pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh
     let mesh = &mut out.surface;
     for (k, p) in points.iter().enumerate() {
         let (u, v) = (us[k % columns], vs[k / columns]);
-        // Where the surface is pinched (base and tip) its neighbourhood knows the direction.
+        // Where the surface is pinched (base and tip) its neighbourhood gives the direction.
         let inner = v + 1e-3 * (0.5 - v);
         let below = || k.checked_sub(columns).map_or(DVec3::Z, |b| wide(mesh.normals[b]));
-        let normal = p.normal.or_else(|| blade.surface.at(u, inner).normal).unwrap_or_else(below);
+        let normal = p.normal.or_else(|| blade.surface.point_at(u, inner).normal).unwrap_or_else(below);
         mesh.push(p.position);
         mesh.normals.push(narrow(normal));
         mesh.uvs.push(flat.as_ref().map_or_else(|| narrow2(u, 1.0 - v), |flat| flat.uv(k)));
@@ -70,7 +70,7 @@ pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh
             let (a, b) = ((i - 1) * columns + j - 1, (i - 1) * columns + j);
             let [a, b, c, d] = [a, b, b + columns, a + columns];
             let mut put = |t: [usize; 3]| mesh.triangles.push(t.map(crate::sleeve::index));
-            // Where a row is one place (tip, joint base) a cell has one triangle.
+            // Where a row is one point (tip, joint base) a cell has one triangle.
             if !one(a, b) {
                 put([a, b, c]);
             }
@@ -83,7 +83,7 @@ pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh
     out
 }
 
-/// The colour of the blade at a place: paler towards the nearest chief vein.
+/// Returns the colour of the blade at a place: paler towards the nearest chief vein.
 fn shaded(shade: &VeinShade, veins: &Venation, at: DVec3, v: f64) -> [f32; 3] {
     let near = |vein: &plant::Vein| {
         let ball = vein.curve.ball(v);
@@ -95,7 +95,7 @@ fn shaded(shade: &VeinShade, veins: &Venation, at: DVec3, v: f64) -> [f32; 3] {
     [0, 1, 2].map(|k| shade.vein[k] + (shade.blade[k] - shade.vein[k]) * (0.3 + 0.7 * share))
 }
 
-/// A grid of points; with less `detail` rows and columns are left out.
+/// Meshes a grid of points; with less `detail` rows and columns are left out.
 pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> ShapeMesh {
     let mut out = ShapeMesh::default();
     if sheet.points.len() != sheet.across.len() * sheet.along.len() {
@@ -125,17 +125,18 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
     mesh.triangles.extend(thin.triangles().map(|t| t.map(crate::sleeve::index)));
     mesh.colors = thin.colors;
     if sheet.form.is_some() {
-        // Painted as the place of the blade that each vertex is nearest to.
+        // Painted like the nearest place of the blade.
         let tree = KdTree::new(&thin.points);
         let uv = |p: &[f32; 3]| tree.nearest(wide(*p), f64::INFINITY).map_or([0.5; 2], |k| mesh.uvs[k]);
         out.veins.uvs = out.veins.positions.iter().map(uv).collect();
     }
-    // Cells without area stay: a bud has the triangles of the bloom.
+    // Cells without area are kept: a bud has the triangles of the bloom.
     mesh.compute_normals();
     out
 }
 
-/// As many of `n` rows, evenly, that triangles are in proportion to `detail`; all from 1 on. The first and the last stay.
+/// Returns evenly spaced ones of `n` rows, so that triangles are in proportion to `detail`; all from 1 on. The first
+/// and the last stay.
 fn kept(n: usize, detail: f64) -> Vec<usize> {
     let Some(last) = n.checked_sub(1) else { return Vec::new() };
     #[expect(clippy::cast_precision_loss, reason = "rows of a blade")]
@@ -145,7 +146,7 @@ fn kept(n: usize, detail: f64) -> Vec<usize> {
 }
 
 impl ShapeMesh {
-    /// A blade within a margin of its own.
+    /// Adds a blade within a margin of its own.
     fn add_net(&mut self, net: &Netted, blade: &SplineBlade, steps: usize) {
         let flat = blade.flat(steps);
         let mesh = &mut self.surface;

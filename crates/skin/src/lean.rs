@@ -1,6 +1,6 @@
-//! Leaves of a crowd: few triangles, spent on the corners that make their form.
+//! Leaves of a crown: few triangles, spent on the corners that define their form.
 //!
-//! `Blade -> corners that matter -> two halves along the midrib -> ears`
+//! `Blade -> most significant corners -> two halves along the midrib -> ears`
 
 use glam::DVec2;
 use mesh::TriMesh;
@@ -10,27 +10,28 @@ use crate::blade::BladeChart;
 use crate::sleeve::{drop_flat, narrow2};
 use crate::spikes::spikes;
 
-/// How much wider than its outline a blade of a coarser copy is drawn, at most: far enough for a kite that stands for a
-/// spray of needles. Others are at most [`plant::DRAWN_WIDER`].
+/// Largest factor by which a blade of a coarser copy is drawn wider than its outline: enough for a kite that represents
+/// a spray of needles. Others have at most [`plant::DRAWN_WIDER`].
 pub(crate) const COPIED_WIDER: f64 = 6.0;
 
-/// How much wider than its outline a blade of a coarser copy is drawn before its bays are closed instead.
+/// Factor beyond which a blade of a coarser copy has its bays closed instead of being drawn wider.
 const WIDE: f64 = 1.5;
 
-/// A blade that fills less of its margin without bays has lobes that make its form, as a maple's or a fig's: few triangles go to
-/// their tips and the bays between, and none to a midrib that bends.
+/// Share of its margin without bays below which a blade has lobes that define its form, as in maple or fig: few
+/// triangles go to their tips and the bays between, and none to a midrib that bends.
 const LOBED: f64 = 0.8;
-/// With so many pairs of triangles and more there are enough for both.
+/// Pairs of triangles from which there are enough for both.
 const MANY_PAIRS: f64 = 3.0;
 
-/// How much shorter the way from root to tip is than along the midrib where a blade of a coarser copy is drawn in steps along it,
-/// and how slender it is at least, half its width over its length: corners of its form alone would leave its arch out.
+/// Largest ratio of the straight distance from root to tip to the length along the midrib at which a blade of a coarser
+/// copy is drawn in steps along it.
 const ARCHED: f64 = 0.97;
+/// Largest half width of such a blade relative to its length: the corners of its form alone would lose its arch.
 const SLENDER: f64 = 0.16;
-/// More triangles make no better arch.
+/// Most triangles of an arched blade: more do not improve the arch.
 const MOST_ARCHED: f64 = 16.0;
 
-/// A slender blade that arches over, as of a grass or a palm, in equal steps along its midrib; none of others.
+/// Meshes a slender arched blade, as of a grass or a palm, in equal steps along its midrib; `None` for others.
 fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     const PARTS: u32 = 12;
     let (outline, surface) = (&blade.outline, blade.surface());
@@ -43,7 +44,7 @@ fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
         return None;
     }
     let steps = base::ops::whole(0.5 * triangles.clamp(2.0, MOST_ARCHED)) as usize;
-    // What of a line across the blade lies in it.
+    // Part of a line across the blade that lies in it.
     let across = |y: f64| {
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
         let at = ends
@@ -73,7 +74,7 @@ fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     Some(bent(blade, &points, wider, triangles))
 }
 
-/// The mesh of triangles between points of a blade's plane, drawn `wider` and bent as the blade is.
+/// Makes the mesh of triangles between points of a blade's plane, drawn `wider` and bent as the blade is.
 fn bent(blade: &Blade, points: &[DVec2], wider: DVec2, triangles: Vec<[u32; 3]>) -> TriMesh {
     let mut mesh = TriMesh { triangles, ..TriMesh::default() };
     let (chart, surface) = (BladeChart::new(blade), blade.surface());
@@ -88,7 +89,7 @@ fn bent(blade: &Blade, points: &[DVec2], wider: DVec2, triangles: Vec<[u32; 3]>)
     mesh
 }
 
-/// A convex blade of three or four corners, as leaflets of far copies are, in as few triangles as it can be.
+/// Meshes a convex blade of three or four corners, such as a leaflet of a far copy, in the fewest triangles.
 fn few_corners(blade: &Blade) -> Option<TriMesh> {
     let outline = &blade.outline;
     if outline.iter().any(|p| !p.is_finite()) || geom::signed_area(outline) <= 0.0 {
@@ -98,12 +99,12 @@ fn few_corners(blade: &Blade) -> Option<TriMesh> {
     Some(bent(blade, outline, DVec2::ONE, triangles))
 }
 
-/// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened so that it has the area that
-/// its outline has, up to `widest` times.
+/// Meshes a blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened up to `widest`
+/// times to keep the area of its outline.
 ///
 /// Guaranteed: root and tip stay, and of the other corners those that enclose most area with their neighbours
-/// (Visvalingam and Whyatt 1993), so lobes and needles outlive smooth curves; texture as on finer blades. `None` where
-/// the outline crosses itself, or its tip cannot be told: then finer meshing has to find a way. Cost: quadratic in the
+/// (Visvalingam and Whyatt 1993), so lobes and needles outlive smooth curves; texture as on finer blades. `None` if the
+/// outline crosses itself, or its tip cannot be determined: then finer meshing must be used. Cost: quadratic in the
 /// corners of the outline.
 pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     let outline = &blade.outline;
@@ -120,7 +121,7 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     let end = *blade.midrib.last()?;
     let tip = nearest(outline, end)?;
     let pairs = (0.5 * triangles.clamp(2.0, 60.0)).round();
-    // With four triangles and more the midrib gets a point in its middle, so that the blade bends.
+    // With four triangles or more the midrib gets a point in its middle, so that the blade bends.
     let lobed =
         || closed(blade).is_some_and(|all| geom::signed_area(outline) < LOBED * geom::signed_area(&all));
     let with_middle = pairs >= 2.0 && (widest <= WIDE || pairs >= MANY_PAIRS || !lobed());
@@ -128,11 +129,11 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     let (kept, end) = corners(outline, (0..outline.len()).collect(), tip, 2 * sides + 2);
     let at = |kept: &[usize]| -> Vec<DVec2> { kept.iter().map(|&i| outline[i]).collect() };
     let (mut points, mut tip_at) = (at(&kept), end);
-    // What the lost corners enclosed is made up for in width: a crown of such leaves is as full as it was.
+    // The area of the lost corners is compensated in width: a crown of such leaves is as full as it was.
     let lost =
         |points: &[DVec2]| geom::signed_area(outline) / geom::signed_area(points).max(f64::MIN_POSITIVE);
     let mut wider = lost(&points).clamp(1.0, widest);
-    // Of deep lobes only their tips would be left, and drawn wide they would be spikes: their bays are closed instead.
+    // Only the tips of deep lobes would remain, and drawn wide they would be spikes: their bays are closed instead.
     if widest > WIDE && wider * half_width(&points) > WIDE * half_width(outline) {
         let (kept, end) = corners(outline, without_bays(outline, tip), tip, 2 * sides + 2);
         let closed = at(&kept);
@@ -159,8 +160,8 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     Some(bent(blade, &points, wider, triangles))
 }
 
-/// A margin of `most` corners that has more and keeps its form but for teeth; none where it has no more, or would cross
-/// itself.
+/// Returns a margin of `most` corners that keeps its form except for teeth; `None` if it has no more corners, or would
+/// cross itself.
 pub(crate) fn fewer_corners(blade: &Blade, most: usize) -> Option<Vec<DVec2>> {
     let outline = &blade.outline;
     if outline.len() <= most || outline.len() > MOST_CORNERS || outline.iter().any(|p| !p.is_finite()) {
@@ -172,7 +173,7 @@ pub(crate) fn fewer_corners(blade: &Blade, most: usize) -> Option<Vec<DVec2>> {
     (geom::signed_area(&fewer) > 0.0 && geom::self_crossings(&fewer) == 0).then_some(fewer)
 }
 
-/// Of more corners it would take too long to find those that matter least.
+/// Most corners among which the least significant are searched, as the time grows fast.
 const MOST_CORNERS: usize = 2000;
 
 fn nearest(points: &[DVec2], to: DVec2) -> Option<usize> {
@@ -180,21 +181,21 @@ fn nearest(points: &[DVec2], to: DVec2) -> Option<usize> {
     (0..points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
-/// Half the width of what lies on both sides of the midrib.
+/// Returns the largest half width of points on both sides of the midrib.
 fn half_width(points: &[DVec2]) -> f64 {
     points.iter().map(|p| p.x.abs()).fold(0.0, f64::max)
 }
 
-/// The margin of a blade without its bays; none where its tip cannot be told.
+/// Returns the margin of a blade without its bays; `None` if its tip cannot be determined.
 pub(crate) fn closed(blade: &Blade) -> Option<Vec<DVec2>> {
     let tip = nearest(&blade.outline, *blade.midrib.last()?)?;
     Some(without_bays(&blade.outline, tip).into_iter().map(|i| blade.outline[i]).collect())
 }
 
-/// The corners of a margin, as indices, without its bays: no other than root and tip lie inwards of their neighbours.
+/// Returns the corners of a margin, as indices, without its bays: only root and tip may be concave.
 fn without_bays(outline: &[DVec2], tip: usize) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::with_capacity(outline.len() + 1);
-    // Round once, the root at both ends (Andrew's scan of a chain): whatever turns inwards goes.
+    // Once round, the root at both ends (Andrew's scan of a chain): concave corners are removed.
     for i in (0..outline.len()).chain([0]) {
         while let [.., a, b] = kept[..] {
             let inwards = (outline[b] - outline[a]).perp_dot(outline[i] - outline[a]) <= 0.0;
@@ -209,7 +210,7 @@ fn without_bays(outline: &[DVec2], tip: usize) -> Vec<usize> {
     kept
 }
 
-/// The corners that stay of those in `kept`, as indices, and which of them is the tip; the root is the first.
+/// Returns the remaining corners of those in `kept`, as indices, and which of them is the tip; the root is the first.
 fn corners(outline: &[DVec2], mut kept: Vec<usize>, tip: usize, wanted: usize) -> (Vec<usize>, usize) {
     while kept.len() > wanted.max(4) {
         let n = kept.len();
@@ -225,7 +226,7 @@ fn corners(outline: &[DVec2], mut kept: Vec<usize>, tip: usize, wanted: usize) -
     (kept, at)
 }
 
-/// The point of a line halfway along it.
+/// Returns the point halfway along a line.
 fn middle(line: &[DVec2]) -> DVec2 {
     let length: f64 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
     let mut left = 0.5 * length;
@@ -245,7 +246,7 @@ fn ears(points: &[DVec2], mut polygon: Vec<usize>, out: &mut Vec<[u32; 3]>) -> O
     while polygon.len() > 2 {
         let n = polygon.len();
         let at = |k: usize| polygon[k % n];
-        // The fattest ear first: slivers stay for the end, and few of them.
+        // The fattest ear first: slivers remain for the end, and few of them.
         let mut best: Option<(f64, usize)> = None;
         for k in 0..n {
             let (a, b, c) = (at(k), at(k + 1), at(k + 2));
@@ -267,7 +268,7 @@ fn ears(points: &[DVec2], mut polygon: Vec<usize>, out: &mut Vec<[u32; 3]>) -> O
             }
         }
         let Some((_, k)) = best else {
-            // What is left has no area: on a straight margin, say.
+            // The rest has no area, for example on a straight margin.
             let area: f64 = (0..n).map(|k| points[at(k)].perp_dot(points[at(k + 1)])).sum();
             let around: f64 = (0..n).map(|k| points[at(k)].distance_squared(points[at(k + 1)])).sum();
             return (area.abs() < 1e-9 * around).then_some(());
@@ -321,7 +322,7 @@ mod tests {
         assert!((area / whole - 1.0).abs() < 0.05, "{area} of {whole}");
     }
 
-    /// As a fig's.
+    /// Like a fig's.
     #[test]
     fn deep_lobes_are_no_spikes() {
         let fingers = blade(&[(0.5, 0.1), (0.52, 0.15), (0.06, 0.3), (0.45, 0.6), (0.43, 0.66), (0.05, 0.5)]);
@@ -332,7 +333,7 @@ mod tests {
         }
     }
 
-    /// As a maple's of a coarser copy.
+    /// Like a maple's of a coarser copy.
     #[test]
     fn four_triangles_keep_three_lobes_and_the_bays_between() {
         let maple = blade(&[(0.15, -0.1), (0.6, 0.4), (0.18, 0.45)]);
@@ -350,7 +351,7 @@ mod tests {
         }
     }
 
-    /// As a leaflet of a far copy.
+    /// Like a leaflet of a far copy.
     #[test]
     fn a_blade_of_few_corners_is_drawn_as_it_is() {
         let corners = |corners: &[(f64, f64)]| Blade {
@@ -373,7 +374,7 @@ mod tests {
         assert!(few_corners(&corners(&backwards)).is_none() && few_corners(&corners(&flawed)).is_none());
     }
 
-    /// As a grass's.
+    /// Like a grass's.
     #[test]
     fn an_arched_blade_keeps_its_reach() {
         let mut grass = blade(&[(0.05, 0.2), (0.08, 0.5), (0.05, 0.8)]);

@@ -3,24 +3,27 @@
 //! `Plant -> spines -> tubes with fillets | shapes -> placed copies -> Model`
 //!
 //! Axes become closed tubes: rings on rotation-minimising frames, as many as it takes to follow the axis; axes that
-//! continue one another as one tube; side branches with a fillet on their bearers as these are drawn. Leaves and
+//! continue one another become one tube; side branches get a fillet on their bearers as these are drawn. Leaves and
 //! petals become constrained Delaunay sheets, one per shape, copied and tinted for each organ. Every kind of surface is
 //! one part with one material and a procedural texture.
 //!
 //! | module | owns |
 //! |---|---|
-//! | `spec` | [`SkinSpec`], [`LeafMeshSpec`], [`PetalColor`]; how triangles are shared out |
+//! | `spec` | [`SkinSpec`], [`LeafMeshSpec`], [`PetalColor`]; the distribution of triangles |
 //! | `spine`, `rings`, `sleeve`, `tube` | smooth centre lines, cross-sections, their triangles, [`tube`] |
-//! | `fork`, `axes` | fillets at forks; which axes are one tube |
+//! | `fork`, `axes` | fillets at forks; the grouping of axes into tubes |
 //! | `stub_end`, `hollow` | ends of stubs; cavities in stems |
-//! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
-//! | `layout`, `copies` | [`Layout`]: what of a plant lies where in its parts; [`copies()`]: leaves that are one form |
+//! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crown; discs, fruits, strands;
+//! placed copies |
+//! | `layout`, `copies` | [`Layout`]: position of axes and organs in the parts; [`copies()`]: leaves that share one
+//! form |
 //! | `needles` | shoots in needles, painted on cards |
 //! | `shoots` | [`FoliageStyle`], [`Shoots`]: leaves as cards, several on one |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `coloured` | stems in colours of their own |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
-//! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
+//! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a user chose; the distance of vertices from the
+//! margin |
 //! | `wind`, `sway` | weights and pivots for wind; [`sway()`]: joints that move by them |
 //! | `texture`, `parts` | painted textures, materials, parts |
 
@@ -28,6 +31,7 @@ mod axes;
 
 mod blade;
 mod body;
+mod colliders;
 mod coloured;
 mod copies;
 mod fork;
@@ -58,6 +62,7 @@ mod wind;
 
 pub use self::spec::{BarkSpec, LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
+pub use colliders::{colliders, joined_colliders};
 pub use copies::copies;
 pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
@@ -85,27 +90,28 @@ use crate::spec::Budget;
 /// Gives a plant its surface: meshes with normals, texture coordinates and materials.
 ///
 /// Guaranteed, for any plant: finite coordinates, unit normals, no triangle that uses a vertex twice
-/// ([`Model::validate`] is clean); every tube closed (a stub by its bark and the wood where it broke off together; the bark of a hollow stem is open behind the rim, where a cavity begins); wood is drawn where the plant has it, to 0.07 % of the plant's
-/// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, dead wood, stems, roots, leaves, veins, petals, discs, fruits,
-/// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by
-/// seed and key. On one that is tinted or drawn a texture without a hue of its own is used. What wears a material
-/// ([`SkinSpec::worn`]) has its colours, varied in the same way, and parts of its own after all others.
-/// With [`SkinSpec::wind`] every vertex also has four numbers, each 0 to 1, and a pivot: sway of the whole plant (0 on
-/// the ground, 1 at the top, by the square of the height); sway of its limb, a branch of a main axis with all that
-/// hangs on it (0 at the limb's foot, growing with the square of the way along the wood over
-/// all forks, 1 after the longest way
-/// in the plant or half of its height, if that is more; 0 on main axes and roots); flutter (0 on wood and at a blade's root, 1 at its tip); and a phase that is
-/// one for all of a limb, leaves included. The pivot is the limb's foot for wood, the root of the organ for organs.
-/// Weights do not jump where a branch leaves its bearer or an organ its twig: they differ by less than 0.01 of what the
-/// bearer's mesh has there. For that long axes get up to a dozen rings more; nothing else of the mesh changes.
-/// Not guaranteed: that organs do not pass through one another, or that tubes at a fork share vertices. A side branch's
-/// foot lies inside its bearer, but for one or two branches in ten thousand: thin twigs that run along their bearer, or
-/// start on its fillet, may miss it by some millimetres.
-/// Cost: linear in axes and organs; about 70 ns a triangle. The first use of a kind of surface also paints its
-/// textures (bark of 512 pixels about 70 ms on one thread). A shape's triangulation costs 0.6 us a triangle, once for all its organs.
+/// ([`Model::validate`] is clean); every tube closed (a stub by its bark together with the wood where it broke off; the
+/// bark of a hollow stem is open behind the rim, where a cavity begins); wood is drawn where the plant has it, to 0.07
+/// % of the plant's size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor.
+/// One part per kind of surface, in the order bark, dead wood, stems, roots, leaves, veins, petals, discs, fruits,
+/// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by seed and
+/// key. A tinted or drawn organ has a texture without a hue of its own. Organs that wear a material
+/// ([`SkinSpec::worn`]) have its colours, varied in the same way, and parts of their own after all others. With
+/// [`SkinSpec::wind`] every vertex also has four numbers, each 0 to 1, and a pivot: sway of the whole plant (0 on the
+/// ground, 1 at the top, by the square of the height); sway of its limb, a branch of a main axis with all that hangs on
+/// it (0 at the limb's foot, growing with the square of the length along the wood over all forks, 1 after the longest
+/// such length in the plant or half of its height, if that is more; 0 on main axes and roots); flutter (0 on wood and
+/// at a blade's root, 1 at its tip); and a phase that is common to a limb, leaves included. The pivot is the limb's
+/// foot for wood, the root of the organ for organs. Weights are continuous where a branch leaves its bearer or an organ
+/// its twig: they differ by less than 0.01 from those of the bearer's mesh there. For that long axes get up to a dozen
+/// additional rings; nothing else of the mesh changes. Not guaranteed: that organs do not intersect, or that tubes at a
+/// fork share vertices. A side branch's foot lies inside its bearer, except for one or two branches in ten thousand:
+/// thin twigs that run along their bearer, or start on its fillet, may miss it by some millimetres. Cost: linear in
+/// axes and organs; about 70 ns a triangle. The first use of a kind of surface also paints its textures (bark of 512
+/// pixels about 70 ms on one thread). A shape's triangulation costs 0.6 us a triangle, once for all its organs.
 ///
 /// # Errors
-/// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
+/// [`Stopped`] when the caller's token is cancelled, or when there would be more triangles than the budget allows.
 ///
 /// He and Cheng (2021), sections 5.3 and 6.
 ///
@@ -123,13 +129,14 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Stop
     skin_again(plant, spec, SurfacePictures::default(), None, run)
 }
 
-/// As [`skin()`], again for a plant that changed a little: shapes that stayed are not triangulated anew. Organs and axes
+/// As [`skin()`], again for a plant that changed slightly: unchanged shapes are not triangulated again. Organs and axes
 /// that were traced over a photograph take their texture from it.
 ///
-/// Guaranteed: the same surface; traced parts come last, have the photograph as their texture and coordinates within it.
+/// Guaranteed: the same surface; traced parts come last, have the photograph as their texture and coordinates within
+/// it.
 ///
 /// # Errors
-/// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
+/// [`Stopped`] when the caller's token is cancelled, or when there would be more triangles than the budget allows.
 pub fn skin_again(
     plant: &Plant,
     spec: &SkinSpec,
@@ -140,10 +147,10 @@ pub fn skin_again(
     Ok(skin_laid_out(plant, spec, pictures, kept, run)?.0)
 }
 
-/// As [`skin_again`], also with what lies where in the parts.
+/// As [`skin_again`], with the position of axes and organs in the parts.
 ///
 /// # Errors
-/// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
+/// [`Stopped`] when the caller's token is cancelled, or when there would be more triangles than the budget allows.
 pub fn skin_laid_out(
     plant: &Plant,
     spec: &SkinSpec,
@@ -174,30 +181,30 @@ pub fn skin_laid_out(
     Ok(parts::model(plant, meshes, spec, pictures, run)?)
 }
 
-/// The vertices of each shape of a plant as [`skin()`] draws it, at scale 1; none of a shape that nothing uses.
+/// Returns the vertices of each shape of a plant as [`skin()`] draws it, at scale 1; empty for an unused shape.
 pub fn drawn_shapes(plant: &Plant, spec: &SkinSpec) -> Vec<Vec<DVec3>> {
     organs::vertices(plant, spec, &budget(plant, spec))
 }
 
-/// The mesh of each shape of a plant as [`skin()`] draws it, at scale 1 in the coordinates of its organs, its veins included;
-/// empty of a shape that nothing uses. No colours.
+/// Returns the mesh of each shape of a plant as [`skin()`] draws it, at scale 1 in the coordinates of its organs,
+/// including its veins; empty for an unused shape. No colours.
 pub fn shape_meshes(plant: &Plant, spec: &SkinSpec) -> Vec<TriMesh> {
     organs::meshes(plant, spec, &budget(plant, spec))
 }
 
-/// The area of each shape of a plant as [`skin()`] draws it, at scale 1, one side, square metres; 0 of a shape that nothing
-/// uses. Cost: that of triangulating each shape once.
+/// Returns the area of each shape of a plant as [`skin()`] draws it, at scale 1, one side, square metres; 0 for an
+/// unused shape. Cost: that of triangulating each shape once.
 pub fn drawn_areas(plant: &Plant, spec: &SkinSpec) -> Vec<f64> {
     organs::areas(plant, spec, &budget(plant, spec))
 }
 
-/// The triangles of each shape of a plant as [`skin()`] draws it, without veins; 0 of a shape that nothing uses. Cost: that of
-/// triangulating each shape once.
+/// Returns the triangles of each shape of a plant as [`skin()`] draws it, without veins; 0 for an unused shape. Cost:
+/// that of triangulating each shape once.
 pub fn drawn_triangles(plant: &Plant, spec: &SkinSpec) -> Vec<usize> {
     organs::triangles(plant, spec, &budget(plant, spec))
 }
 
-/// What to do where there would be too many triangles.
+/// Remedy for too many triangles.
 pub(crate) const FEWER: &str = "lower the detail (or sides), or make fewer branches or leaves";
 
 fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
@@ -217,7 +224,7 @@ fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
     Budget::new(spec.detail, size, mean, axes, organs)
 }
 
-/// The box around nodes and organs.
+/// Returns the box around nodes and organs.
 fn bounds(plant: &Plant) -> mesh::Bounds {
     plant.extent().map_or(mesh::Bounds::EMPTY, |(min, max)| mesh::Bounds { min, max })
 }

@@ -1,4 +1,4 @@
-//! How far each vertex of a blade lies from its margin.
+//! Distance of each vertex of a blade from its margin.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +8,13 @@ use plant::Shape;
 
 use crate::sleeve::wide;
 
-/// Below this part of a blade's length lies its root, where it is cut off and has no margin.
+/// Share of a blade's length, from its tip, beyond which the root is cut off and has no margin.
 const ROOT: f32 = 0.96;
 /// Half widths of a petal between its middle and its tip.
 const SLENDER: f32 = 4.0;
 
-/// From 0 on the margin to 1 where a blade is farthest from it; of a petal that bends from day to day by its own columns
-/// and rows, so that it stays. Cost: vertices times edges of the margin.
+/// Returns distances from 0 on the margin to 1 at the farthest place of a blade; of a petal that bends from day to day
+/// by its own columns and rows, so that they are constant. Cost: vertices times edges of the margin.
 pub(crate) fn from_margin(shape: &Shape, mesh: &TriMesh) -> Vec<f32> {
     if mesh.uvs.len() != mesh.positions.len() {
         return Vec::new();
@@ -34,7 +34,7 @@ pub(crate) fn from_margin(shape: &Shape, mesh: &TriMesh) -> Vec<f32> {
     all.iter().map(|d| (d / most).clamp(0.0, 1.0) as f32).collect()
 }
 
-/// Edges of one triangle only, but for those across the root.
+/// Returns the edges that belong to only one triangle, except those across the root.
 fn margin(mesh: &TriMesh) -> Vec<(u32, u32)> {
     let mut uses: BTreeMap<(u32, u32), u32> = BTreeMap::new();
     for &[a, b, c] in &mesh.triangles {
@@ -79,7 +79,7 @@ mod tests {
         let inner = from_margin(&Shape::Blade(blade), &mesh);
         for (p, inner) in mesh.positions.iter().zip(&inner) {
             let (x, y) = (f64::from(p[0]), f64::from(p[1]));
-            // Along x the margin is at most this far, and no nearer than by its steepness.
+            // Along x the margin is at most this far, and no nearer than its steepness allows.
             let across = (y * (1.0 - y) - x.abs()).max(0.0) / 0.25;
             let inner = f64::from(*inner);
             assert!(

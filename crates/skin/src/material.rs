@@ -1,4 +1,4 @@
-//! Materials that a person gives to leaves, petals and sepals, in the place of what the plant would have.
+//! Materials that a user gives to leaves, petals and sepals, instead of the plant's own.
 
 use base::LiteMap;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spec::Colour;
 
-/// What is painted on an organ.
+/// Pattern that is painted on an organ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -46,7 +46,7 @@ impl Pattern {
         Self::Picture,
     ];
 
-    /// The word in files and in names of materials.
+    /// Returns the word in files and in names of materials.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -60,7 +60,7 @@ impl Pattern {
         }
     }
 
-    /// Painted by how far a place is from the margin, not by how far it is across.
+    /// Whether it is painted by the distance from the margin, not by the position across.
     pub(crate) const fn follows_margin(self) -> bool {
         matches!(self, Self::Picotee | Self::Variegated)
     }
@@ -76,20 +76,20 @@ impl Pattern {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OrganMaterial {
-    /// What is painted on it.
+    /// The painted pattern.
     pub pattern: Pattern,
-    /// The first colour; that of most of the organ. A picture is shown in its own colours.
+    /// The first colour, which covers most of the organ. A picture is shown in its own colours.
     pub color: Colour,
-    /// The second colour: of veins, streaks, spots, the margin, the root.
+    /// The second colour, for veins, streaks, spots, the margin, the root.
     pub second: Colour,
-    /// How much there is of the second colour, 0 to 1, default 0.5.
+    /// Amount of the second colour, 0 to 1, default 0.5.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub amount: f64,
-    /// 0 is as glossy as wet leaves, 1 as matt as velvet; default 0.6.
+    /// Roughness: 0 is as glossy as wet leaves, 1 as matt as velvet; default 0.6.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub roughness: f64,
-    /// Of the pattern `picture`: which. In a file of materials the path of a PNG or JPEG beside it; in a document the name
-    /// under which it is kept.
+    /// Picture of the pattern `picture`. In a file of materials the path of a PNG or JPEG relative to it; in a document
+    /// the name under which it is stored.
     pub picture: Option<String>,
 }
 
@@ -106,23 +106,29 @@ impl Default for OrganMaterial {
     }
 }
 
-/// Materials to begin with, by the word under which people know them.
+/// Predefined materials, by the words under which users know them.
 pub static MATERIALS: [(&str, OrganMaterial); 12] = [
-    ("rose", of(Pattern::Shaded, 0x00c8_2f4e, 0x00f2_d9b0, 0.35, 0.75)),
-    ("velvet", of(Pattern::Plain, 0x006a_0f24, 0x002a_0610, 0.5, 1.0)),
-    ("geranium", of(Pattern::Veined, 0x00b5_8ad6, 0x0055_1f7c, 0.5, 0.65)),
-    ("orchid", of(Pattern::Streaked, 0x00f4_dcea, 0x00a1_1c5e, 0.6, 0.5)),
-    ("foxglove", of(Pattern::Speckled, 0x00e2_8fc0, 0x006a_163c, 0.5, 0.6)),
-    ("tiger-lily", of(Pattern::Speckled, 0x00ee_7a1c, 0x003a_120a, 0.35, 0.5)),
-    ("picotee", of(Pattern::Picotee, 0x00fb_f6ee, 0x00c4_2a62, 0.3, 0.65)),
-    ("tulip", of(Pattern::Picotee, 0x00c6_1a22, 0x00f4_c828, 0.4, 0.45)),
-    ("hosta", of(Pattern::Variegated, 0x003f_7834, 0x00ee_eabd, 0.4, 0.6)),
-    ("camellia", of(Pattern::Veined, 0x001f_4f24, 0x006f_964e, 0.35, 0.2)),
-    ("sage", of(Pattern::Veined, 0x008d_a382, 0x00c2_cfb4, 0.4, 1.0)),
-    ("autumn", of(Pattern::Shaded, 0x00c8_4a16, 0x00e6_b42c, 0.6, 0.7)),
+    ("rose", organ_material(Pattern::Shaded, 0x00c8_2f4e, 0x00f2_d9b0, 0.35, 0.75)),
+    ("velvet", organ_material(Pattern::Plain, 0x006a_0f24, 0x002a_0610, 0.5, 1.0)),
+    ("geranium", organ_material(Pattern::Veined, 0x00b5_8ad6, 0x0055_1f7c, 0.5, 0.65)),
+    ("orchid", organ_material(Pattern::Streaked, 0x00f4_dcea, 0x00a1_1c5e, 0.6, 0.5)),
+    ("foxglove", organ_material(Pattern::Speckled, 0x00e2_8fc0, 0x006a_163c, 0.5, 0.6)),
+    ("tiger-lily", organ_material(Pattern::Speckled, 0x00ee_7a1c, 0x003a_120a, 0.35, 0.5)),
+    ("picotee", organ_material(Pattern::Picotee, 0x00fb_f6ee, 0x00c4_2a62, 0.3, 0.65)),
+    ("tulip", organ_material(Pattern::Picotee, 0x00c6_1a22, 0x00f4_c828, 0.4, 0.45)),
+    ("hosta", organ_material(Pattern::Variegated, 0x003f_7834, 0x00ee_eabd, 0.4, 0.6)),
+    ("camellia", organ_material(Pattern::Veined, 0x001f_4f24, 0x006f_964e, 0.35, 0.2)),
+    ("sage", organ_material(Pattern::Veined, 0x008d_a382, 0x00c2_cfb4, 0.4, 1.0)),
+    ("autumn", organ_material(Pattern::Shaded, 0x00c8_4a16, 0x00e6_b42c, 0.6, 0.7)),
 ];
 
-const fn of(pattern: Pattern, color: u32, second: u32, amount: f64, roughness: f64) -> OrganMaterial {
+const fn organ_material(
+    pattern: Pattern,
+    color: u32,
+    second: u32,
+    amount: f64,
+    roughness: f64,
+) -> OrganMaterial {
     OrganMaterial { pattern, color: rgb(color), second: rgb(second), amount, roughness, picture: None }
 }
 
@@ -147,7 +153,7 @@ impl Wearer {
     /// Every one, in the order of [`Worn::kinds`].
     pub const ALL: [Self; 3] = [Self::Leaf, Self::Petal, Self::Sepal];
 
-    /// The word in files and in names of materials.
+    /// Returns the word in files and in names of materials.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Leaf => "leaf",
@@ -156,7 +162,7 @@ impl Wearer {
         }
     }
 
-    /// The word for several, in names of parts.
+    /// Returns the word for several, in names of parts.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Leaf => "leaves",
@@ -165,7 +171,7 @@ impl Wearer {
         }
     }
 
-    pub(crate) const fn of(kind: OrganKind) -> Option<Self> {
+    pub(crate) const fn from_kind(kind: OrganKind) -> Option<Self> {
         match kind {
             OrganKind::Leaf => Some(Self::Leaf),
             OrganKind::Petal => Some(Self::Petal),
@@ -175,23 +181,24 @@ impl Wearer {
     }
 }
 
-/// Which organs of a plant wear which material: a file of materials.
+/// Materials of the organs of a plant: a file of materials.
 ///
-/// What a stroke wears goes before what its kind of organ wears. Not guaranteed: that a plant has such organs.
+/// The material of a stroke takes precedence over that of its kind of organ. Not guaranteed: that a plant has such
+/// organs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Wear {
-    /// Of all leaves.
+    /// Material of all leaves.
     pub leaf: Option<OrganMaterial>,
-    /// Of all petals.
+    /// Material of all petals.
     pub petal: Option<OrganMaterial>,
-    /// Of all sepals and bracts.
+    /// Material of all sepals and bracts.
     pub sepal: Option<OrganMaterial>,
-    /// Of what was drawn by single strokes.
+    /// Materials of the organs that were drawn by single strokes.
     pub strokes: Vec<StrokeWear>,
 }
 
-/// What strokes of a drawing wear.
+/// Material of strokes of a drawing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct StrokeWear {
@@ -205,8 +212,8 @@ spec::schemas!(Wear = include_str!("../schemas/materials.json"));
 spec::schemas!(OrganMaterial => Wear, "/$defs/OrganMaterial");
 
 impl Wear {
-    /// What the organs of a kind wear.
-    pub const fn of(&self, wearer: Wearer) -> Option<&OrganMaterial> {
+    /// Returns the material of the organs of a kind.
+    pub const fn material(&self, wearer: Wearer) -> Option<&OrganMaterial> {
         match wearer {
             Wearer::Leaf => self.leaf.as_ref(),
             Wearer::Petal => self.petal.as_ref(),
@@ -223,17 +230,17 @@ impl Wear {
         } = material;
     }
 
-    /// Every material, those of kinds first.
+    /// Iterates over all materials, those of kinds first.
     pub fn materials(&self) -> impl Iterator<Item = &OrganMaterial> {
-        let kinds = Wearer::ALL.into_iter().filter_map(|w| self.of(w));
+        let kinds = Wearer::ALL.into_iter().filter_map(|w| self.material(w));
         kinds.chain(self.strokes.iter().map(|s| &s.material))
     }
 
-    /// As it is meshed; `picture` gives the pixels of a picture by its name.
+    /// Converts it for meshing; `picture` returns the pixels of a picture by its name.
     pub fn worn(&self, mut picture: impl FnMut(&str) -> Option<Arc<Texture>>) -> Worn {
         let mut worn = Worn::default();
         for wearer in Wearer::ALL {
-            worn.kinds[wearer as usize] = self.of(wearer).map(|m| worn.row(m, &mut picture));
+            worn.kinds[wearer as usize] = self.material(wearer).map(|m| worn.row(m, &mut picture));
         }
         for StrokeWear { strokes, material } in &self.strokes {
             let row = worn.row(material, &mut picture);
@@ -248,27 +255,27 @@ impl Wear {
 /// A material with the pixels of its picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloth {
-    /// What it is.
+    /// The material.
     pub material: OrganMaterial,
-    /// The picture of the pattern `picture`; without one it is plain.
+    /// The picture of the pattern `picture`; without one the material is plain.
     pub picture: Option<Arc<Texture>>,
 }
 
 /// The materials that organs of a plant wear, as [`Wear::worn`] makes them. Default: none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Worn {
-    /// Each once.
+    /// Each material once.
     pub cloths: Vec<Cloth>,
     /// Rows of `cloths`, by [`Wearer::ALL`].
     pub kinds: [Option<usize>; 3],
-    /// Rows of `cloths`, by the stroke that an organ was read from; before those of kinds.
+    /// Rows of `cloths`, by the stroke that an organ was read from; they take precedence over those of kinds.
     pub strokes: LiteMap<u32, usize>,
-    /// They are painted also where no other surface has a texture ([`crate::SkinSpec::textures`]).
+    /// Whether they are painted even if no other surface has a texture ([`crate::SkinSpec::textures`]).
     pub always: bool,
 }
 
 impl Worn {
-    /// The same, painted also where no other surface has a texture, or not.
+    /// Sets whether they are painted even if no other surface has a texture.
     #[must_use]
     pub fn always(self, always: bool) -> Self {
         Self { always, ..self }
@@ -288,9 +295,9 @@ impl Worn {
         self.cloths.len() - 1
     }
 
-    /// What an organ wears.
-    pub(crate) fn of(&self, organ: &Organ) -> Option<(Wearer, usize)> {
-        let wearer = Wearer::of(organ.kind)?;
+    /// Returns the material of an organ.
+    pub(crate) fn material(&self, organ: &Organ) -> Option<(Wearer, usize)> {
+        let wearer = Wearer::from_kind(organ.kind)?;
         let own = organ.source.and_then(|s| self.strokes.get(&s)).copied();
         let row = own.or(self.kinds[wearer as usize])?;
         (row < self.cloths.len()).then_some((wearer, row))
@@ -302,7 +309,7 @@ impl Worn {
         (0..self.cloths.len()).flat_map(names).any(|name| name == material)
     }
 
-    /// The name of a material within a model.
+    /// Returns the name of a material within a model.
     pub(crate) fn name(&self, wearer: Wearer, row: usize) -> String {
         let pattern = self.cloths.get(row).map_or(Pattern::Plain, |c| c.material.pattern);
         format!("{}-{}-{}", wearer.word(), pattern.word(), row + 1)

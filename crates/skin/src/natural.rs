@@ -1,13 +1,13 @@
-//! What barks and leaves there are.
+//! Kinds of bark and of leaf venation.
 
-/// What bark is like.
+/// Kind of bark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum BarkKind {
     /// Ridges that part and meet again, broken across, with furrows between: oak, poplar, willow.
     #[default]
     Furrowed,
-    /// Closed and grey, with fine wrinkles across and eyes where branches have been: beech.
+    /// Closed and grey, with fine cross wrinkles and eyes where branches have been: beech.
     Smooth,
     /// Plates of thin scales with deep cracks between: pine.
     Plated,
@@ -21,7 +21,7 @@ pub enum BarkKind {
     Cane,
     /// Ribs with rows of spines, four to a tile: cactus.
     Ribbed,
-    /// Young: fine wrinkles along it and small lenticels.
+    /// Young: fine lengthwise wrinkles and small lenticels.
     Twig,
 }
 
@@ -39,7 +39,7 @@ impl BarkKind {
         Self::Twig,
     ];
 
-    /// Height of the relief over the width of a tile.
+    /// Returns the height of the relief relative to the width of a tile.
     pub(crate) const fn depth(self) -> f64 {
         match self {
             Self::Furrowed => 0.030,
@@ -54,7 +54,7 @@ impl BarkKind {
     }
 }
 
-/// How the veins of a leaf run.
+/// Course of the veins of a leaf.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum VeinPattern {
@@ -63,11 +63,11 @@ pub enum VeinPattern {
     Pinnate,
     /// One vein for each lobe from the end of the stalk: maple.
     Palmate,
-    /// Side by side from root to tip: grasses, palms.
+    /// Parallel from root to tip: grasses, palms.
     Parallel,
-    /// Of leaflets, each with a midrib of its own: ash, rose.
+    /// Leaflets, each with a midrib of its own: ash, rose.
     Compound,
-    /// None to be seen: needles and scales.
+    /// Not visible: needles and scales.
     Needle,
 }
 

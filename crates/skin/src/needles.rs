@@ -1,9 +1,9 @@
-//! Shoots in needles or scales: which places of a blade's plane are leaf.
+//! Shoots in needles or scales: the places of a blade's plane that are leaf.
 
 use glam::DVec2;
 use plant::{Blade, NeedleMap};
 
-/// Which places of a blade's plane are leaf.
+/// The places of a blade's plane that are leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cut {
     outline: geom::Inside,
@@ -12,17 +12,17 @@ pub(crate) struct Cut {
 
 impl Cut {
     pub(crate) fn new(blade: &Blade) -> Self {
-        Self { outline: geom::Inside::of(&blade.outline), needles: NeedleMap::of(blade) }
+        Self { outline: geom::Inside::new(&blade.outline), needles: NeedleMap::from_blade(blade) }
     }
 
     pub(crate) fn has(&self, p: DVec2) -> bool {
         match &self.needles {
-            Some(map) => map.at(p).is_some(),
+            Some(map) => map.seen_at(p).is_some(),
             None => self.outline.has(p),
         }
     }
 
-    /// Whether it is between needles: there a card is a hole from near by, and closed from far away.
+    /// Whether it is between needles: there a card has a hole seen from near by, and is closed from far away.
     pub(crate) fn between(&self, p: DVec2) -> bool {
         self.needles.is_some() && self.outline.has(p)
     }
@@ -33,7 +33,7 @@ mod tests {
     use super::*;
     use plant::Needles;
 
-    /// `sketch` counts the shoots of a drawn conifer by what each covers.
+    /// `sketch` counts the shoots of a drawn conifer by the area that each covers.
     #[test]
     fn a_spruces_shoot_covers_a_fifth_of_the_square_of_its_length() {
         let cut = Cut::new(&Blade::shoot(Needles::of_length(0.075), 3, 1.0));

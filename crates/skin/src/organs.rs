@@ -1,4 +1,4 @@
-//! Organs -> meshes: each shape is triangulated once, its organs are moved and tinted copies.
+//! Meshes organs: each shape is triangulated once, its organs are moved and tinted copies.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -23,10 +23,11 @@ use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
 use crate::wind::{Wind, flutter};
 
-// Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
+// Number of vertices in a group of copied organs: one job each would cost more than the copy.
 const GROUP: usize = 6000;
 
-/// The organs' meshes, gathered by slot in the order of the organs. `wood`: triangles that there are already.
+/// Makes the organs' meshes, collected by slot in the order of the organs. `wood`: number of triangles that exist
+/// already.
 ///
 /// # Errors
 /// [`Stopped`].
@@ -70,14 +71,14 @@ pub(crate) fn organs(
     let placed = |(i, o): (usize, &Organ)| {
         let shape = &plant.shapes[o.shape.index()];
         let slot = match *shape {
-            Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint, shape)),
+            Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::choose(o.paint, shape)),
             Shape::Sheet(ref sheet) if sheet.form.is_some() => {
-                Slot::Form(sheet.form.unwrap_or_default(), Coat::of(o.paint, shape))
+                Slot::Form(sheet.form.unwrap_or_default(), Coat::choose(o.paint, shape))
             }
             _ => ground.slot(o, shape),
         };
         let veins = if matches!(shape, Shape::Sheet(s) if s.form.is_some()) { slot } else { Slot::Veins };
-        let slot = match spec.worn.of(o) {
+        let slot = match spec.worn.material(o) {
             Some((wearer, row)) => Slot::Worn(wearer, row),
             None if of_photo(o).is_some() => slot.traced(),
             None => slot,
@@ -117,7 +118,7 @@ pub(crate) fn organs(
                 photo.organ(&mut mesh, first);
             }
             if let Slot::Worn(_, row) = slot {
-                // Not the colours that the shape has for itself.
+                // These replace the colours that the shape has itself.
                 mesh.colors[first..].fill(color);
                 let margin = &margins[organ.shape.index()];
                 if spec.worn.cloths[row].material.pattern.follows_margin() && !margin.is_empty() {
@@ -136,7 +137,7 @@ pub(crate) fn organs(
     Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
-/// What is told of each shape as it is drawn at scale 1; the default of one that nothing uses.
+/// Returns a value for each shape as it is drawn at scale 1; the default for an unused one.
 fn of_each<T: Default>(
     plant: &Plant,
     spec: &SkinSpec,
@@ -154,7 +155,7 @@ fn of_each<T: Default>(
     plant.shapes.iter().enumerate().zip(uses(plant)).map(drawn).collect()
 }
 
-/// The mesh of each shape as it is drawn at scale 1, its veins included; empty of one that nothing uses.
+/// Returns the mesh of each shape as it is drawn at scale 1, including its veins; empty for an unused one.
 pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<TriMesh> {
     of_each(plant, spec, budget, |made, _| {
         let mut all = TriMesh::default();
@@ -167,19 +168,20 @@ pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Tri
     })
 }
 
-/// The vertices of each shape as it is drawn at scale 1; none of one that nothing uses.
+/// Returns the vertices of each shape as it is drawn at scale 1; empty for an unused one.
 pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Vec<DVec3>> {
     of_each(plant, spec, budget, |made, _| {
         made.surface.positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect()
     })
 }
 
-/// The triangles of the surface of each shape; none of one that nothing uses.
+/// Returns the triangles of the surface of each shape; 0 for an unused one.
 pub(crate) fn triangles(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<usize> {
     of_each(plant, spec, budget, |made, _| made.surface.triangles.len())
 }
 
-/// The area of each shape as it is drawn at scale 1, one side, without what is cut out of it, square metres; 0 of one that nothing uses.
+/// Returns the area of each shape as it is drawn at scale 1, one side, without its holes, square metres; 0 for an
+/// unused one.
 pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64> {
     of_each(plant, spec, budget, |made, share| {
         let area = |t: &[u32; 3]| {
@@ -190,7 +192,8 @@ pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64>
     })
 }
 
-/// How far from the margin each vertex of a shape is, for shapes that wear a pattern of the margin; empty for others.
+/// Returns the distance of each vertex of a shape from the margin, for shapes with a pattern of the margin; empty for
+/// others.
 fn margins(
     plant: &Plant,
     spec: &SkinSpec,
@@ -199,7 +202,7 @@ fn margins(
 ) -> Result<Vec<Vec<f32>>, Stopped> {
     let mut wanted = vec![false; shapes.len()];
     for organ in &plant.organs {
-        let worn = spec.worn.of(organ).map(|(_, row)| spec.worn.cloths[row].material.pattern);
+        let worn = spec.worn.material(organ).map(|(_, row)| spec.worn.cloths[row].material.pattern);
         if let Some(wanted) = wanted.get_mut(organ.shape.index()) {
             *wanted |= worn.is_some_and(Pattern::follows_margin);
         }
@@ -211,12 +214,12 @@ fn margins(
     Ok(made.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
-/// A blade with few triangles; none where so many are wished for that corners alone cannot use them.
+/// Meshes a blade with few triangles; `None` if more are requested than corners alone can use.
 fn lean(blade: &plant::Blade, wish: f64, widest: f64) -> Option<TriMesh> {
     (wish <= 60.0).then(|| lean_mesh(blade, wish, widest)).flatten()
 }
 
-/// A blade whose margin has few enough corners for so many triangles.
+/// Returns a blade whose margin has few enough corners for this number of triangles.
 fn plain(blade: &plant::Blade, triangles: f64) -> Cow<'_, plant::Blade> {
     let most = base::ops::whole(0.5 * triangles).max(8) as usize;
     match fewer_corners(blade, most) {
@@ -231,18 +234,18 @@ fn sound(organ: &Organ) -> bool {
     axes && f.origin.is_finite() && organ.scale.is_finite() && organ.scale > 0.0
 }
 
-/// What a shape is used for.
+/// Use of a shape.
 #[derive(Clone, Copy, Debug, Default)]
 struct Use {
     /// The largest scale.
     scale: f64,
-    /// Of a body.
+    /// Whether it is used for a body.
     body: bool,
-    /// Of leaves alone.
+    /// Whether it is used for leaves alone.
     leaf: bool,
 }
 
-/// The use of each shape; `None` for one that nobody uses.
+/// Returns the use of each shape; `None` for an unused one.
 fn uses(plant: &Plant) -> Vec<Option<Use>> {
     let mut uses = vec![None; plant.shapes.len()];
     for organ in plant.organs.iter().filter(|o| sound(o)) {
@@ -285,28 +288,28 @@ fn groups(order: &[Copied], vertices: impl Fn(&Copied) -> usize) -> Vec<core::op
     out
 }
 
-/// How finely a shape is made: all that its mesh depends on besides the shape. Numbers of triangles.
+/// Resolution of a shape: everything other than the shape on which its mesh depends. Numbers of triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wish {
     Nothing,
-    /// A leaf of a crown, widened so many times at most.
+    /// A leaf of a crown, with the largest factor on its width.
     Lean(f64, f64),
     /// A card, in this part of an atlas.
     Card([f64; 4]),
     Sheet(f64),
-    /// Of a coarser copy: without teeth that alone would be more triangles.
+    /// For a coarser copy: without teeth that alone would be more triangles.
     Plain(f64),
     Dome(f64),
-    /// With at least so many sides.
+    /// With the least number of sides.
     Revolution(f64, u32),
-    /// A body along a line, as such.
+    /// A body along a line.
     Bent(f64, u32),
     Strand {
         fine: bool,
     },
     /// A strand of a crown.
     Prism,
-    /// A strand of a plant of which there are several days.
+    /// A strand of a plant that is shown on several days.
     Rod,
     Spline(LeafMeshSpec),
     /// With this detail.
@@ -354,10 +357,10 @@ impl Wish {
     }
 }
 
-/// The meshes of a plant's leaves, petals and other shapes, for the next surface of the same plant: those of shapes that
-/// did not change are taken over.
+/// The meshes of a plant's leaves, petals and other shapes, reused for the next surface of the same plant if the shapes
+/// did not change.
 ///
-/// Guaranteed, but for [`loose`](Self::loose): what comes out is the same with and without.
+/// Guaranteed, except for [`loose`](Self::loose): the result is the same with and without.
 #[derive(Clone, Debug, Default)]
 pub struct KeptShapes {
     shapes: Vec<Shape>,
@@ -369,19 +372,20 @@ pub struct KeptShapes {
 type Made = (Wish, Arc<ShapeMesh>);
 
 impl KeptShapes {
-    /// Rows that are looked at before and after a shape's own: a stroke brings few shapes.
+    /// Rows that are examined before and after a shape's own: a stroke adds few shapes.
     const AROUND: usize = 16;
-    /// Of more shapes none are kept: they would take the memory of another plant.
+    /// Most shapes that are kept: more would take the memory of another plant.
     const MOST: usize = 4096;
 
-    /// For looks at a plant that is still being drawn: also takes over meshes with up to a tenth more or less
-    /// triangles than a fresh one would have. A growing stroke changes the plant's size a little at every look.
+    /// Makes a cache for previews of a plant that is still being drawn: it also reuses meshes with up to a tenth more
+    /// or less triangles than a fresh one would have. A growing stroke changes the plant's size slightly at every
+    /// preview.
     #[must_use]
     pub fn loose() -> Self {
         Self { loose: true, ..Self::default() }
     }
 
-    /// The mesh of a shape of the plant that was meshed last, in the shape's own frame.
+    /// Returns the mesh of a shape of the plant that was meshed last, in the shape's own frame.
     pub fn get(&self, shape: ShapeId) -> Option<&ShapeMesh> {
         self.made.get(shape.index()).map(|(_, mesh)| &**mesh)
     }
@@ -394,7 +398,7 @@ impl KeptShapes {
             };
             (wish == *was || (self.loose && wish.nearly(*was))) && old == shape
         };
-        // Its own row first: most often it is there.
+        // Its own row first: it is usually there.
         let found = core::iter::once(row).chain(rows).find(same)?;
         self.made.get(found).cloned()
     }
@@ -409,22 +413,22 @@ impl KeptShapes {
 /// Ribs of a cactus.
 const RIBS: u32 = 16;
 
-/// More leaves are a crowd.
+/// Most leaves that do not form a crown.
 const FEW_LEAVES: usize = 1500;
 
-/// What the plant as a whole decides for its organs.
+/// Decisions for the plant as a whole that affect its organs.
 struct Ground<'a> {
-    /// Says which leaves are cards.
+    /// Decides which leaves are cards.
     spec: &'a SkinSpec,
     petals: PetalColor,
-    /// Few enough stamens and thorns to give each more than three rings.
+    /// Whether stamens and thorns are few enough to give each more than three rings.
     fine_strands: bool,
     leaf: LeafMeshSpec,
-    /// The same triangles at every day.
+    /// Whether the triangles must be the same on every day.
     steady: bool,
-    /// Of a coarser copy.
+    /// Whether it is a coarser copy.
     copy: bool,
-    /// So few leaves, of a plant of many flowers, that each is looked at: it bends.
+    /// Whether a plant of many flowers has so few leaves that each is noticed: they bend.
     few_leaves: bool,
 }
 
@@ -437,7 +441,7 @@ impl<'a> Ground<'a> {
             .count();
         Self {
             spec,
-            petals: PetalColor::of(plant, spec),
+            petals: PetalColor::for_plant(plant, spec),
             fine_strands: strands <= 40,
             leaf: spec.leaf,
             steady: spec.steady_m.is_some(),
@@ -447,7 +451,7 @@ impl<'a> Ground<'a> {
         }
     }
 
-    /// Of a card, what is leaf, 0 to 1; of all else 1.
+    /// Returns the share of a card that is leaf, 0 to 1; 1 for everything else.
     fn share(&self, wish: Wish, (row, shape): (usize, &Shape)) -> f64 {
         match (wish, self.tile(row), shape) {
             (Wish::Card(_), Some((_, tile)), _) => tile.share(),
@@ -483,13 +487,13 @@ impl<'a> Ground<'a> {
                     );
                 }
                 let wanted = triangles(area).max(least * budget.detail.min(1.0));
-                // Of few triangles none is to be spent inside of the form.
+                // With few triangles none may be spent inside of the form.
                 if self.copy && wanted <= 60.0 {
                     return Wish::Lean(wanted, COPIED_WIDER);
                 }
                 if self.copy { Wish::Plain(wanted) } else { Wish::Sheet(wanted) }
             }
-            // A dome is smooth: two fifths of what a blade of its size has.
+            // A dome is smooth: two fifths of the triangles of a blade of its size.
             Shape::Dome { radius_m, height_m } if radius_m.is_finite() && height_m.is_finite() => {
                 Wish::Dome(0.4 * triangles(base::ops::PI * radius_m * radius_m))
             }
@@ -515,14 +519,14 @@ impl<'a> Ground<'a> {
             Shape::Strand { knob_m: 0.0, .. } if self.steady => Wish::Rod,
             Shape::Strand { knob_m: 0.0, .. } if budget.crown() || self.copy => Wish::Prism,
             Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
-            Shape::Spline(_) => Wish::Spline(self.leaf.at(budget.detail)),
-            Shape::Sheet(_) => Wish::Grid(self.leaf.at(budget.detail), budget.detail),
+            Shape::Spline(_) => Wish::Spline(self.leaf.with_detail(budget.detail)),
+            Shape::Sheet(_) => Wish::Grid(self.leaf.with_detail(budget.detail), budget.detail),
             _ => Wish::Nothing,
         }
     }
 
     fn slot(&self, organ: &Organ, shape: &Shape) -> Slot {
-        let coat = Coat::of(organ.paint, shape);
+        let coat = Coat::choose(organ.paint, shape);
         match organ.kind {
             OrganKind::Petal => Slot::Petal(coat, self.petals),
             OrganKind::Sepal => Slot::Sepal(coat),
@@ -540,7 +544,7 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// The vertex colour of an organ: its paint, varied a little in brightness and hue.
+/// Returns the vertex colour of an organ: its paint, varied slightly in brightness and hue.
 fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
     let mut draw = spec.seed.child(organ.key).stream(Draw::Tint);
     let (light, warm) = (draw.uniform(), draw.uniform());
@@ -556,7 +560,7 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
         OrganKind::Pistil if slot == Slot::Stamen(Coat::Natural) => [0.62, 0.86, 0.42],
         _ => [1.0; 3],
     };
-    // A material is itself; only the variation of its plant is on it.
+    // A material keeps its colours; only the variation of its plant applies.
     let paint = if let Slot::Worn(..) = slot { [1.0; 3] } else { organ.paint.rgb() };
     let hue = [1.0 + warm.min(0.0), 1.0, 1.0 - 0.9 * warm.abs()];
     [0, 1, 2].map(|i| {
@@ -605,10 +609,10 @@ mod tests {
             let found = |length, wish, row| kept.find(&leaf(length), wish, row);
             let is = |found: Option<Made>, row: usize| found.is_some_and(|m| Arc::ptr_eq(&m.1, &made[row].1));
             assert!(is(found(3.0, wish, 2), 2));
-            // A shape before it came or went.
+            // A shape before it was added or removed.
             assert!(is(found(3.0, wish, 1), 2) && is(found(1.0, wish, 9), 0));
             assert!(found(1.5, wish, 0).is_none() && found(1.0, Wish::Sheet(70.0), 0).is_none());
-            // As it was made, so that small steps do not add up.
+            // As it was first made, so that small steps do not accumulate.
             let near = found(1.0, Wish::Sheet(61.0), 0);
             assert_eq!(near.map(|m| m.0), kept.loose.then_some(wish));
             let many = vec![leaf(1.0); KeptShapes::MOST + 1];

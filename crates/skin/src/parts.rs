@@ -17,7 +17,7 @@ use crate::texture::{
 };
 use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, VeinPattern, Wearer, Worn};
 
-/// What a part of the model is made of; one part and one material each, in this order.
+/// Kind of surface; one part and one material each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Slot {
     Bark,
@@ -33,7 +33,7 @@ pub(crate) enum Slot {
     Form(u32, Coat),
     /// Veins of measured leaves.
     Veins,
-    /// With the colour of those that have a natural one.
+    /// In the natural colour of the plant's petals.
     Petal(Coat, PetalColor),
     Sepal(Coat),
     Disc(Coat),
@@ -45,13 +45,13 @@ pub(crate) enum Slot {
     Pot,
     Stamen(Coat),
     Thorn,
-    /// In the colours of the photograph that it was traced over.
+    /// In the colours of the photograph over which it was traced.
     Traced(MaterialKind),
-    /// In a material that a person chose: a row of [`crate::Worn::cloths`].
+    /// In a material that a user chose: a row of [`crate::Worn::cloths`].
     Worn(Wearer, usize),
 }
 
-/// Where the colour of a surface comes from.
+/// Source of the colour of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Coat {
     Natural,
@@ -59,12 +59,12 @@ pub(crate) enum Coat {
     Tinted,
     /// Vertex colours that differ over the surface, and no texture.
     Own,
-    /// So is what was drawn in colour; it has a part of its own.
+    /// As tinted, but drawn in colour by the user; it has a part of its own.
     Drawn,
 }
 
 impl Coat {
-    pub(crate) fn of(paint: Paint, shape: &Shape) -> Self {
+    pub(crate) fn choose(paint: Paint, shape: &Shape) -> Self {
         match paint {
             _ if matches!(shape, Shape::Sheet(s) if !s.colors.is_empty()) => Self::Own,
             Paint::Natural(_) => Self::Natural,
@@ -75,7 +75,7 @@ impl Coat {
 }
 
 impl Slot {
-    /// The same surface in the colours of a photograph, which has branches and twigs as one.
+    /// Returns the same surface in the colours of a photograph, where branches and twigs are one.
     pub(crate) fn traced(self) -> Self {
         match self.kind() {
             MaterialKind::YoungBark => Self::Traced(MaterialKind::Bark),
@@ -101,7 +101,7 @@ impl Slot {
         }
     }
 
-    /// Names of the part and of its material.
+    /// Returns the names of the part and of its material.
     fn names(self, worn: &Worn) -> (Cow<'static, str>, String) {
         let (part, material) = match self {
             Self::Worn(wearer, row) => {
@@ -152,7 +152,7 @@ impl Slot {
         (part.into(), material)
     }
 
-    /// What its texture shows; none for what has no texture of its own, or one with relief.
+    /// Returns its texture; `None` if it has none of its own, or one with relief.
     fn motif(self) -> Option<Motif> {
         Some(match self {
             Self::Form(..) | Self::Veins | Self::Sepal(_) | Self::Worn(..) | Self::Traced(_) => return None,
@@ -179,7 +179,8 @@ impl Slot {
         })
     }
 
-    /// Its colour with relief; none for what has none. `old`: the plant has old bark, so that young bark is of twigs.
+    /// Returns its colour with relief; `None` if it has no relief. `old`: the plant has old bark, so that young bark is
+    /// of twigs.
     fn surface(
         self,
         spec: &SkinSpec,
@@ -200,7 +201,7 @@ impl Slot {
                     leaf: &shown.unwrap_or_else(any_blade),
                     shoots,
                     inks,
-                    wood: spec.bark.unwrap_or_default().of(true).1.srgb(),
+                    wood: spec.bark.unwrap_or_default().kind_and_colour(true).1.srgb(),
                 };
                 return atlas(&what, size, run);
             }
@@ -212,7 +213,7 @@ impl Slot {
         let painted = match self {
             Self::Bark | Self::YoungBark => {
                 let twig = old && self == Self::YoungBark;
-                let (kind, colour) = spec.bark.unwrap_or_default().of(twig);
+                let (kind, colour) = spec.bark.unwrap_or_default().kind_and_colour(twig);
                 bark(kind, colour.srgb(), if twig { size / 2 } else { size }, run)
             }
             Self::Leaf(Coat::Natural) => leaves(&GREEN, false),
@@ -226,7 +227,7 @@ impl Slot {
         painted.map(Some)
     }
 
-    /// Linear colour that stands for the texture where none is wanted: its mean.
+    /// Returns the linear colour that replaces the texture if none is requested: its mean.
     fn plain_color(self) -> [f32; 3] {
         match self {
             Self::Bark => [0.126, 0.084, 0.055],
@@ -259,15 +260,17 @@ impl Slot {
         }
     }
 
-    /// Its colour as the plant's maker knows it.
+    /// Returns the colour that the plant's maker gave it.
     fn known_color(self, plant: &Plant, spec: &SkinSpec, old: bool) -> Option<[f32; 3]> {
         match self {
             Self::Bark | Self::YoungBark if !spec.textures => {
                 #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-                let plain = |b: BarkSpec| b.of(old && self == Self::YoungBark).1.linear().map(|x| x as f32);
+                let plain = |b: BarkSpec| {
+                    b.kind_and_colour(old && self == Self::YoungBark).1.linear().map(|x| x as f32)
+                };
                 spec.bark.map(plain)
             }
-            // Those of its axes are in the mesh.
+            // The colours of its axes are in the mesh.
             Self::Stem | Self::Body if is_coloured(plant) => Some([1.0; 3]),
             Self::Stem => plant.paint.stem,
             Self::Veins => plant.paint.veins,
@@ -316,7 +319,7 @@ impl Slot {
         };
         if let Some(Surface { color, maps }) = relief {
             (m.texture, m.maps, m.base_color) = (Some(color), maps, [1.0; 3]);
-            // Of the rest the map decides.
+            // The map determines the roughness of the rest.
             m.roughness = if m.double_sided { LEAF_ROUGHNESS } else { 1.0 };
             let cards = match self {
                 Self::Leaf(_) => spec.cards(false),
@@ -331,15 +334,15 @@ impl Slot {
     }
 }
 
-/// The leaf on which most veins were drawn, of which all of a plant have their surface: a species has one venation. One
-/// vein alone is a fold or a shade. At length 1 and in steps that no eye sees, so that it is the same surface when the
-/// plant has grown by a line.
+/// Returns the leaf with the most drawn veins, from which all leaves of a plant have their surface: a species has one
+/// venation. A single vein is a fold or a shade. At length 1 and in invisibly small steps, so that it is the same
+/// surface when the plant has grown by a line.
 fn veined(plant: &Plant) -> Blade {
     const FEWEST: usize = 2;
     const STEPS: f64 = 4096.0;
     let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
     let blades = leaves.filter_map(|o| blade(plant, o.shape)).filter(|b| b.needles.is_none());
-    // Of several the first.
+    // Among several keep the first.
     let most = blades.fold(None, |most: Option<&Blade>, b| {
         let more = b.veins.len() > most.map_or(FEWEST - 1, |m| m.veins.len());
         if more { Some(b) } else { most }
@@ -352,7 +355,7 @@ fn veined(plant: &Plant) -> Blade {
     leaf
 }
 
-/// The blade of a shape that is one.
+/// Returns the blade of a shape that is one.
 fn blade(plant: &Plant, shape: ShapeId) -> Option<&Blade> {
     match plant.shapes.get(shape.index()) {
         Some(Shape::Blade(blade)) => Some(blade),
@@ -361,11 +364,11 @@ fn blade(plant: &Plant, shape: ShapeId) -> Option<&Blade> {
 }
 
 impl Cloth {
-    /// Puts it on a material of a blade; without `painted` in its mean colour.
+    /// Applies it to a material of a blade; without `painted` in its mean colour.
     fn dress(&self, m: &mut Material, painted: bool, executor: &dyn Executor) {
         #[expect(clippy::cast_possible_truncation, reason = "0 to 1")]
         let roughness = self.material.roughness.clamp(0.0, 1.0) as f32;
-        // Of gloss and velvet alike light comes through a blade.
+        // Glossy and velvety blades alike transmit light.
         (m.roughness, m.translucency) = (roughness, 0.4);
         let picture = self.picture.as_ref();
         if painted {
@@ -380,7 +383,7 @@ impl Cloth {
     }
 }
 
-/// The mean of what is seen of a texture, linear.
+/// Returns the mean of the visible part of a texture, linear.
 fn mean(texture: &Texture) -> [f32; 3] {
     let seen = || texture.pixels.chunks_exact(4).filter(|p| p[3] >= 128);
     #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
@@ -389,8 +392,8 @@ fn mean(texture: &Texture) -> [f32; 3] {
     [0, 1, 2].map(|k| (seen().map(|p| base::light_of_byte(p[k])).sum::<f64>() / count) as f32)
 }
 
-/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted if they are wanted. Also
-/// what lies where in the parts.
+/// Collects meshes by slot, in slot order; empty ones leave no part. Textures are painted if they are requested. Also
+/// returns the position of axes and organs in the parts.
 pub(crate) fn model(
     plant: &Plant,
     mut meshes: Vec<(Slot, TriMesh, Vec<Piece>)>,
@@ -429,7 +432,7 @@ fn joined(meshes: &[(Slot, TriMesh, Vec<Piece>)]) -> TriMesh {
     all.positions.reserve_exact(vertices);
     all.normals.reserve_exact(vertices);
     all.uvs.reserve_exact(vertices);
-    // A body may be tube or organ: tubes have no tint, so beside tinted meshes they are white.
+    // A body may be tube or organ: tubes have no tint, so next to tinted meshes they are white.
     let tinted = meshes.iter().any(|(_, m, _)| !m.colors.is_empty());
     all.colors.reserve_exact(if tinted { vertices } else { 0 });
     all.triangles.reserve_exact(triangles);

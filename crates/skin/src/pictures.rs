@@ -1,4 +1,4 @@
-//! Where surfaces take their pixels from.
+//! Pictures from which surfaces take their pixels.
 
 use std::sync::Arc;
 
@@ -6,11 +6,11 @@ use mesh::Texture;
 
 use crate::traced::Traced;
 
-/// Pictures that lie on the surfaces of a plant, in the place of painted textures.
+/// Pictures on the surfaces of a plant, instead of painted textures.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SurfacePictures<'a> {
     /// The photograph under a drawing.
     pub traced: Option<&'a Traced>,
-    /// Of measured leaves, by the number of their form ([`plant::SplineBlade::form`]).
+    /// Pictures of measured leaves, by the number of their form ([`plant::SplineBlade::form`]).
     pub leaves: &'a [Option<Arc<Texture>>],
 }

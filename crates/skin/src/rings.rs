@@ -1,4 +1,4 @@
-//! Spine -> rings: where cross-sections stand and how they are turned.
+//! Places cross-sections along a spine, and orients them.
 
 use glam::DVec3;
 
@@ -16,26 +16,26 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// The unit vector across at an angle given by its cosine and sine, from `across` towards `up`.
+    /// Returns the transverse unit vector at an angle given by its cosine and sine, from `across` towards `up`.
     pub(crate) fn ray(&self, (cos, sin): (f64, f64)) -> DVec3 {
         self.across * cos + self.up * sin
     }
 
-    /// The outward normal of the tube along `ray`: leans with the taper.
+    /// Returns the outward normal of the tube along `ray`, which leans with the taper.
     pub(crate) fn normal(&self, ray: DVec3) -> DVec3 {
         (ray - self.tangent * self.slope).normalize()
     }
 }
 
-// Neighbouring ring planes may meet no nearer than this many radii from the centre line: they never fold over.
+// Least distance from the centre line, in radii, at which neighbouring ring planes may meet: they never fold over.
 const CLEARANCE: f64 = 1.15;
 
-/// `spine` as it is drawn, and the number of its first ring: about `count` rings from arc length `from` to the end,
-/// denser where the line turns or swells, and more where the line would depart from the straight pieces between them by
-/// more than `tolerance` says for its radius there. What bears other axes is this, not the smooth line.
+/// Returns `spine` as it is drawn, and the index of its first ring: about `count` rings from arc length `from` to the
+/// end, denser where the line turns or swells, and more where the line would deviate from the straight pieces between
+/// them by more than `tolerance` for its radius there. This, not the smooth line, bears other axes.
 ///
-/// On a bearer the line has two more samples without rings: where it leaves it, from where the fillet runs straight to
-/// the first ring, and as far back on that straight line as its start.
+/// On a bearer the line has two more samples without rings: at its exit, from where the fillet runs straight to the
+/// first ring, and as far back on that straight line as its start.
 pub(crate) fn drawn(
     spine: &Spine,
     reach: Option<&Reach>,
@@ -46,7 +46,10 @@ pub(crate) fn drawn(
     let stations = refined(spine, &stations, tolerance);
     let foot = reach.map_or_else(Vec::new, |r| {
         let along = (stations[0].centre - r.exit.centre).try_normalize().unwrap_or(r.exit.tangent);
-        vec![Station { centre: r.exit.centre - along * r.exit.s, tangent: along, ..spine.at(0.0) }, r.exit]
+        vec![
+            Station { centre: r.exit.centre - along * r.exit.s, tangent: along, ..spine.station_at(0.0) },
+            r.exit,
+        ]
     });
     let all = || foot.iter().chain(&stations);
     let line = Spine {
@@ -59,8 +62,8 @@ pub(crate) fn drawn(
     (line, foot.len())
 }
 
-/// The rings at the samples of a drawn line from number `first` on: planes bisecting its bends, twist minimal (double
-/// reflection, Wang et al. 2008).
+/// Returns the rings at the samples of a drawn line from index `first` on: planes bisecting its bends, twist minimal
+/// (double reflection, Wang et al. 2008).
 pub(crate) fn rings(line: &Spine, first: usize) -> Vec<Ring> {
     let n = line.p.len();
     let tangents = eased_tangents(line, first);
@@ -85,14 +88,14 @@ pub(crate) fn rings(line: &Spine, first: usize) -> Vec<Ring> {
     rings
 }
 
-/// How rings at the samples of a drawn line stand, by their normals: those below ring `first`, which are not drawn, upright on
-/// the line.
+/// Returns the normals of the rings at the samples of a drawn line: those below ring `first`, which are not drawn, are
+/// perpendicular to the line.
 pub(crate) fn planes(line: &Spine, first: usize) -> Vec<DVec3> {
     let below = &line.t[..first.min(line.t.len())];
     below.iter().copied().chain(eased_tangents(line, first)).collect()
 }
 
-/// Equal shares of a weight made of length, turning and swelling.
+/// Returns stations at equal shares of a weight made of length, turning and swelling.
 fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     let length = spine.length();
     let from = from.clamp(0.0, length * 0.98);
@@ -111,7 +114,7 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
         radius += spine.r[k] * visible(k);
     }
     let left = length - from;
-    // A straight axis gets even rings; one that turns by a radian in all spends half of them on its bends.
+    // A straight axis gets even rings; one that turns by a radian in total spends half of them on its bends.
     let (per_turn, per_swell) = (1.0 / (turning + 1.0), 0.5 / (swelling + 1.0));
     for k in pieces {
         let w = visible(k) / left + turn(k) * per_turn + swell(k) * per_swell;
@@ -125,8 +128,8 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     let mut k = 0;
     for j in 0..n {
         let station = match j {
-            0 => spine.at(from),
-            _ if j == n - 1 => spine.at(length),
+            0 => spine.station_at(from),
+            _ if j == n - 1 => spine.station_at(length),
             _ => {
                 let target = total * f64::from(j) / f64::from(n - 1);
                 while k + 2 < weight.len() && weight[k + 1] < target {
@@ -142,8 +145,8 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     out
 }
 
-/// Between each two stations the samples of `spine` that it takes to stay within the tolerance (Douglas and Peucker
-/// 1973). Cost: n log n in samples.
+/// Adds between any two stations the samples of `spine` needed to stay within the tolerance (Douglas and Peucker 1973).
+/// Cost: n log n in samples.
 fn refined(spine: &Spine, stations: &[Station], tolerance: impl Fn(f64) -> f64) -> Vec<Station> {
     let mut out = Vec::with_capacity(2 * stations.len());
     out.extend(stations.first());
@@ -164,8 +167,8 @@ fn refined(spine: &Spine, stations: &[Station], tolerance: impl Fn(f64) -> f64) 
     out
 }
 
-/// The sample between two stations that departs most, in its tolerances, from the cone between them: if by more than
-/// one.
+/// Returns the sample between two stations that deviates most, in its tolerances, from the cone between them, if by
+/// more than one.
 fn farthest(spine: &Spine, from: &Station, to: &Station, tolerance: impl Fn(f64) -> f64) -> Option<usize> {
     let a = spine.s.partition_point(|&s| s <= from.s);
     let b = spine.s.partition_point(|&s| s < to.s).min(spine.s.len() - 1).max(a);
@@ -181,12 +184,12 @@ fn farthest(spine: &Spine, from: &Station, to: &Station, tolerance: impl Fn(f64)
             worst = Some((off, k));
         }
     }
-    // Of many samples the middle half is parted, so that each look is at fewer than before.
+    // With many samples the middle half is split, so that each search covers fewer than before.
     let edge = if b - a > 64 { (b - a) / 4 } else { 0 };
     worst.map(|(_, k)| k.clamp(a + edge, b - 1 - edge))
 }
 
-/// Ring plane normals whose turn from ring to ring keeps the planes apart within the tube.
+/// Returns ring plane normals whose turn from ring to ring keeps the planes apart within the tube.
 fn eased_tangents(line: &Spine, first: usize) -> Vec<DVec3> {
     let (p, t, r) = (&line.p[first..], &line.t[first..], &line.r[first..]);
     let n = p.len();
@@ -209,11 +212,11 @@ fn eased_tangents(line: &Spine, first: usize) -> Vec<DVec3> {
     for i in (1..n).rev() {
         backward[i - 1] = within(backward[i], backward[i - 1], limit(i));
     }
-    // The mean leans to neither end; a last pass restores the bound that averaging may have broken.
+    // The mean prefers neither end; a last pass restores the bound that averaging may have broken.
     let mut mean: Vec<DVec3> =
         forward.iter().zip(&backward).map(|(a, b)| (*a + *b).try_normalize().unwrap_or(*a)).collect();
     if first == 0 {
-        // What nothing bears begins as it is told to: a trunk is level with the ground.
+        // The start of an axis without a bearer is given: a trunk is horizontal at the ground.
         mean[0] = t[0];
     }
     for i in 1..n {
@@ -222,7 +225,7 @@ fn eased_tangents(line: &Spine, first: usize) -> Vec<DVec3> {
     mean
 }
 
-/// `b`, or the direction towards it at an angle of cosine `cos` from `a` where it is farther.
+/// Returns `b`, or the direction towards it at an angle of cosine `cos` from `a` if it is farther.
 fn within(a: DVec3, b: DVec3, cos: f64) -> DVec3 {
     if a.dot(b) >= cos {
         return b;
@@ -231,7 +234,7 @@ fn within(a: DVec3, b: DVec3, cos: f64) -> DVec3 {
     a * cos + side * (1.0 - cos * cos).max(0.0).sqrt()
 }
 
-/// The next ring's `across` without twist: double reflection.
+/// Returns the next ring's `across` without twist: double reflection.
 fn transport(before: &Ring, centre: DVec3, tangent: DVec3) -> DVec3 {
     let reflect = |v: DVec3, by: DVec3| {
         let c = by.length_squared();
@@ -248,7 +251,7 @@ fn transport(before: &Ring, centre: DVec3, tangent: DVec3) -> DVec3 {
 mod tests {
     use super::*;
 
-    /// A line that zigzags by 40 degrees.
+    /// Makes a line that zigzags by 40 degrees.
     fn zigzag() -> Spine {
         let points: Vec<DVec3> = (0..12)
             .map(|i| DVec3::new(if i % 2 == 0 { 0.0 } else { 0.2 }, 0.5 * f64::from(i), 0.0))
@@ -271,7 +274,7 @@ mod tests {
                 hint = piece;
                 assert!(at.centre.distance(*p) <= share * r * 1.000_001, "{share}: {p} is off");
             }
-            // Fewer than the samples: only what it takes.
+            // Fewer than the samples: only as many as needed.
             assert!(line.p.len() < spine.p.len() && line.p.len() >= 13, "{} rings", line.p.len());
         }
     }
@@ -285,7 +288,7 @@ mod tests {
             let (line, first) = drawn(&spine, None, 40.0, |r| 0.1 * r);
             let rings = rings(&line, first);
             assert!(rings[0].across.y.abs() < 1e-12 && rings[0].up.y.abs() < 1e-12, "{lean}: {:?}", rings[0]);
-            // No ring cuts through the next one, but for a sliver where the trunk leans most.
+            // No ring intersects the next one, except for a sliver where the trunk leans most.
             for pair in rings.windows(2) {
                 for turn in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
                     let [a, b] = [0, 1].map(|k| pair[k].centre + pair[k].ray(turn) * pair[k].radius);
@@ -293,7 +296,7 @@ mod tests {
                 }
             }
         }
-        // What lies on the ground is cut across.
+        // The foot of a stem lying on the ground is cut across.
         let mut lying = Spine::new(&[DVec3::ZERO, DVec3::new(2.0, 0.2, 0.0)], &[0.1, 0.1], 20, None).unwrap();
         lying.stand();
         assert!(rings(&lying, 0)[0].tangent.x > 0.9);
@@ -302,9 +305,9 @@ mod tests {
     #[test]
     fn what_lies_below_the_first_ring_is_straight() {
         let spine = zigzag();
-        let exit = spine.at(0.3);
+        let exit = spine.station_at(0.3);
         let (line, first) = drawn(&spine, Some(&Reach { exit, on: 1.0, top: 0.8 }), 6.0, |r| r);
-        assert_eq!((first, line.s[1], line.s[2]), (2, 0.3, spine.at(0.8).s));
+        assert_eq!((first, line.s[1], line.s[2]), (2, 0.3, spine.station_at(0.8).s));
         let (a, b) = (line.p[1] - line.p[0], line.p[2] - line.p[1]);
         assert!(a.normalize().dot(b.normalize()) > 1.0 - 1e-12);
         assert!((a.length() - 0.3).abs() < 1e-12);

@@ -1,6 +1,7 @@
-//! Leaves as cards with holes: of one leaf, or of several leaves of a shoot; and where each is in the atlas of its plant.
+//! Leaves as cards with holes: of one leaf, or of several leaves of a shoot; and the position of each in the plant's
+//! atlas.
 //!
-//! `Plant -> clusters of leaves -> a few of them flat, to be painted | a card in the place of each cluster`
+//! `Plant -> clusters of leaves -> a few of them flat, to be painted | a card for each cluster`
 
 use base::{Digest, Seed};
 use glam::{DVec2, DVec3};
@@ -11,36 +12,38 @@ use crate::blade::BladeChart;
 use crate::needles::Cut;
 use crate::sleeve::{drop_flat, narrow2};
 
-/// So much of the wood of a card counts as covered: thin twigs are lost in a texture (64 pixels of an oak show hardly any of
-/// them), the stalks of palm leaves are not.
+/// Share of the wood of a card that counts as covered: thin twigs are lost in a texture (64 pixels of an oak show
+/// hardly any of them), the stalks of palm leaves are not.
 const WOOD_SEEN: f64 = 0.5;
 
-/// How leaves are drawn.
+/// Drawing of leaves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FoliageStyle {
     /// By their outlines.
     #[default]
     Outlines,
-    /// By cards of six corners, of whose texture the leaf is cut out.
+    /// By cards of six corners, with the leaf cut out of their texture.
     Cards,
     /// By outlines in the finest level, by cards in the next, and by cards of whole shoots in those that are coarser.
     ByLevel,
 }
 
-/// Leaves that a painted shoot has: few enough to be seen as leaves, and enough to stand for a twig.
+/// Leaves of a painted shoot: few enough to be recognisable, and enough to represent a twig.
 const LEAVES: usize = 12;
-/// Painted shoots, by how far the leaves of a cluster lie apart: dense ones, because what lies apart leaves a card empty.
+/// Quantiles of the spread of the leaves in a cluster at which shoots are chosen for painting: dense ones, because
+/// spread ones leave a card empty.
 const DENSE: [f64; 3] = [0.10, 0.25, 0.45];
-/// How a card of a shoot is folded: as a roof, so that it is seen from its edge, too.
+/// Fold of a card of a shoot, like a roof, so that it is visible from its edge, too.
 const FOLD: f64 = -0.35;
-/// Half of the thickness of the wood of a shoot, as a share of its length; of stalks half of that.
+/// Half of the thickness of the wood of a shoot, as a share of its length; half of that for stalks.
 const WOOD: f64 = 0.005;
 /// Samples along a side by which the cover of a shoot is measured.
 const SAMPLES: u32 = 128;
-/// Of a cell of the atlas, what stays free at each side: coarser copies of a texture mix neighbours.
+/// Margin that stays free on each side of a cell of the atlas, as a share of it: coarser copies of a texture mix
+/// neighbours.
 const MARGIN: f64 = 1.0 / 64.0;
 
-/// A leaf of a shoot as it lies flat.
+/// A leaf of a shoot in its plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FlatLeaf {
     /// Its root.
@@ -48,52 +51,52 @@ pub(crate) struct FlatLeaf {
     /// Unit vector from root to tip.
     pub(crate) along: DVec2,
     pub(crate) scale: f64,
-    /// Across and along the card: how its normal leans.
+    /// Lean of its normal, across and along the card.
     pub(crate) tilt: DVec2,
-    /// 1 at the top, less below others.
+    /// Light: 1 at the top, less below others.
     pub(crate) lit: f64,
 }
 
 impl FlatLeaf {
-    /// From the shoot's plane to the leaf's own.
+    /// Converts from the shoot's plane to the leaf's own.
     pub(crate) fn local(&self, p: DVec2) -> DVec2 {
         let d = (p - self.at) / self.scale;
         DVec2::new(d.x * self.along.y - d.y * self.along.x, d.dot(self.along))
     }
 
-    /// From the leaf's own plane to the shoot's.
+    /// Converts from the leaf's own plane to the shoot's.
     fn place(&self, p: DVec2) -> DVec2 {
         self.at + (DVec2::new(self.along.y, -self.along.x) * p.x + self.along * p.y) * self.scale
     }
 }
 
-/// A shoot that is painted.
+/// A painted shoot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tile {
     /// Its card.
     pub(crate) card: Blade,
-    /// Lowest first.
+    /// Its leaves, the lowest first.
     pub(crate) leaves: Vec<FlatLeaf>,
     /// Lines of wood: from, to.
     pub(crate) wood: Vec<[DVec2; 2]>,
     /// Middle of the leaves.
     middle: DVec2,
-    /// What leaves and what is seen of the wood cover, square metres.
+    /// Area covered by leaves and visible wood, square metres.
     covered: f64,
 }
 
-/// The shoots of a plant that its atlas shows.
+/// The shoots of a plant in its atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shoots {
     pub(crate) leaf: Blade,
-    /// What of it is leaf.
+    /// The places of its plane that are leaf.
     pub(crate) cut: Cut,
     pub(crate) tiles: Vec<Tile>,
-    /// Where the cards of the tiles stand among the shapes of a plant whose leaves are drawn as shoots.
+    /// Index of the cards of the tiles among the shapes of a plant whose leaves are drawn as shoots.
     shape: usize,
 }
 
-/// The part of the atlas of `cells` cells that shows cell `k`: from u, from v, width, height.
+/// Returns the part of the atlas of `cells` cells that shows cell `k`: from u, from v, width, height.
 pub(crate) fn part(k: usize, cells: usize) -> [f64; 4] {
     let columns = columns(cells);
     let size = 1.0 / columns as f64;
@@ -102,22 +105,22 @@ pub(crate) fn part(k: usize, cells: usize) -> [f64; 4] {
     [column * size + edge, row * size + edge, inner, inner]
 }
 
-/// Cells along a side of an atlas.
+/// Returns the cells along a side of an atlas.
 pub(crate) fn columns(cells: usize) -> usize {
     if cells > 1 { 2 } else { 1 }
 }
 
-/// A place of a cell's chart by the place within the cell.
+/// Converts a position within a cell to one in its chart.
 pub(crate) fn chart_place(uv: DVec2) -> DVec2 {
     (uv - MARGIN) / (1.0 - 2.0 * MARGIN)
 }
 
 impl Shoots {
-    /// The shoots of a plant with leaves of one flat form, which may be shoots in needles; none where there are few leaves, or of
-    /// no such form.
+    /// Finds the shoots of a plant with leaves of one flat form, which may be shoots in needles; `None` if there are
+    /// few leaves, or no such form.
     ///
-    /// Cost: n log n in leaves, and some 10 ms for measuring what shoots cover.
-    pub fn of(plant: &Plant) -> Option<Self> {
+    /// Cost: n log n in leaves, and some 10 ms for measuring the area of shoots.
+    pub fn find(plant: &Plant) -> Option<Self> {
         let (shape, leaf) = leaf_shape(plant)?;
         let cut = Cut::new(&leaf);
         let leaves = leaves_of(plant, shape);
@@ -141,10 +144,19 @@ impl Shoots {
         (tiles.len() == DENSE.len()).then_some(Self { leaf, cut, tiles, shape: plant.shapes.len() })
     }
 
+    /// The same shoots for another plant, whose leaves have the same form, so that the atlases of both are equal; none for one with
+    /// other leaves or few.
+    pub fn lent(&self, plant: &Plant) -> Option<Self> {
+        let (shape, leaf) = leaf_shape(plant)?;
+        let is_leafy = leaves_of(plant, shape).len() >= LEAVES * 2 * DENSE.len();
+        (is_leafy && leaf == self.leaf).then(|| Self { shape: plant.shapes.len(), ..self.clone() })
+    }
+
     /// Takes the leaves of `plant`, of which these are the shoots, out of it and puts cards of `shoots` times 12
     /// leaves each in their places.
     ///
-    /// Guaranteed: together the cards show as much leaf as the leaves have. Cards are leaves with the keys of one of theirs.
+    /// Guaranteed: together the cards show as much leaf area as the leaves have. Cards are leaves with the keys of one
+    /// of theirs.
     pub fn stand_in(&self, plant: &mut Plant, shoots: usize) {
         let Some((shape, leaf)) = leaf_shape(plant) else { return };
         let leaves = leaves_of(plant, shape);
@@ -172,7 +184,7 @@ impl Shoots {
         plant.shapes.extend(self.tiles.iter().map(|t| Shape::Blade(t.card.clone())));
     }
 
-    /// The tile of a shape.
+    /// Returns the tile of a shape.
     pub(crate) fn tile(&self, shape: usize) -> Option<(usize, &Tile)> {
         let row = shape.checked_sub(self.shape)?;
         self.tiles.get(row).map(|t| (row, t))
@@ -192,12 +204,12 @@ impl Shoots {
 }
 
 impl Tile {
-    /// What is leaf of what its card has, 0 to 1.
+    /// Returns the share of its card's area that is leaf, 0 to 1.
     pub(crate) fn share(&self) -> f64 {
         (self.covered / geom::signed_area(&self.card.outline).abs().max(f64::MIN_POSITIVE)).min(1.0)
     }
 
-    /// Whether a place of the plane is on the wood.
+    /// Whether a point of the plane is on the wood.
     pub(crate) fn on_wood(&self, p: DVec2) -> bool {
         let thick = WOOD * self.card.length();
         self.wood.iter().enumerate().any(|(k, [a, b])| {
@@ -207,7 +219,7 @@ impl Tile {
         })
     }
 
-    /// The leaf that is seen at a place of the plane.
+    /// Returns the visible leaf at a point of the plane.
     pub(crate) fn seen(&self, leaf: &Cut, p: DVec2) -> Option<(&FlatLeaf, DVec2)> {
         self.leaves.iter().rev().find_map(|flat| {
             let own = flat.local(p);
@@ -216,7 +228,7 @@ impl Tile {
     }
 }
 
-/// The flat form that most leaves have.
+/// Returns the flat form of the most leaves.
 fn leaf_shape(plant: &Plant) -> Option<(ShapeId, Blade)> {
     let mut counts = vec![0_usize; plant.shapes.len()];
     for organ in plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && sound(o)) {
@@ -250,7 +262,7 @@ fn middle(organ: &Organ, leaf: &Blade) -> DVec3 {
     organ.frame.origin + organ.frame.along * (0.5 * leaf.length() * organ.scale)
 }
 
-/// Leaves that lie together, `most` or a few less in each: halves of halves across where they reach farthest.
+/// Groups neighbouring leaves, `most` or slightly fewer in each: halves of halves across their greatest extent.
 fn clusters(plant: &Plant, leaf: &Blade, leaves: Vec<usize>, most: usize) -> Vec<Vec<usize>> {
     let mut done = Vec::new();
     let mut open = vec![(leaves.len().div_ceil(most.max(1)), leaves)];
@@ -275,7 +287,8 @@ fn clusters(plant: &Plant, leaf: &Blade, leaves: Vec<usize>, most: usize) -> Vec
     done
 }
 
-/// The plane of a cluster: through the middle of its leaves, along where they point, and facing as one of them does.
+/// Returns the plane of a cluster: through the centre of its leaves, along their mean direction, and facing as one of
+/// them does.
 fn frame(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Frame> {
     let organs = || members.iter().map(|&i| &plant.organs[i]);
     let n = members.len() as f64;
@@ -286,7 +299,7 @@ fn frame(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Frame> {
     Some(Frame::looking(centre, along, first.frame.normal))
 }
 
-/// A cluster as it is painted: its leaves turned into its plane.
+/// Makes a cluster for painting: its leaves turned into its plane.
 fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Tile> {
     let frame = frame(plant, leaf, members)?;
     let mut deep: Vec<(f64, &Organ)> =
@@ -300,7 +313,7 @@ fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Til
         .zip(0_u32..)
         .map(|(&(_, o), rank)| {
             let root = frame.localise(o.frame.origin).truncate();
-            // One that points out of the plane lies to its side.
+            // A leaf that points out of the plane is turned to its side.
             let aside = DVec2::new(if root.x < 0.0 { -0.6 } else { 0.6 }, 0.8);
             let way = flat(o.frame.along).truncate();
             let along = if way.length() > 0.25 { way.normalize() } else { aside };
@@ -319,7 +332,7 @@ fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Til
     let high = points.iter().map(|p| p.y).fold(0.0, f64::max);
     let tops = leaves.iter().map(|l| l.at.y).fold(0.0, f64::max);
     let mut wood = vec![[DVec2::ZERO, DVec2::new(0.0, tops)]];
-    // Leaves far from the middle are those of other twigs.
+    // Leaves far from the middle belong to other twigs.
     let near = |l: &&FlatLeaf| l.at.x.abs() < leaf.length() * l.scale;
     let stalk = |l: &FlatLeaf| [DVec2::new(0.0, (l.at.y - 0.6 * l.at.x.abs()).max(0.0)), l.at];
     wood.extend(leaves.iter().filter(near).map(stalk));
@@ -346,7 +359,7 @@ fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Til
     (tile.covered > 0.0).then_some(tile)
 }
 
-/// What is seen of a card, square metres.
+/// Returns the visible area of a card, square metres.
 fn covered(card: &Blade, is_seen: impl Fn(DVec2) -> bool) -> f64 {
     let chart = BladeChart::new(card);
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SAMPLES);
@@ -356,8 +369,8 @@ fn covered(card: &Blade, is_seen: impl Fn(DVec2) -> bool) -> f64 {
     all.filter(seen).count() as f64 / f64::from(SAMPLES * SAMPLES) * (size.x * size.y).abs()
 }
 
-/// The two corners on the right of a card from `low` to `high` on its middle line that holds the points with x above 0: where the lines
-/// from both ends, as near to the points as can be, meet the widest place.
+/// Returns the two corners on the right of a card from `low` to `high` on its middle line that contains the points with
+/// x above 0: the intersections of the lines from both ends, as near to the points as possible, with the widest place.
 fn half(points: &[DVec2], low: f64, high: f64) -> [DVec2; 2] {
     let wide = points.iter().map(|p| p.x).fold(0.0, f64::max).max(1e-6 * (high - low));
     let steep = |rise: f64, x: f64| rise.max(0.0) / x;
@@ -369,8 +382,8 @@ fn half(points: &[DVec2], low: f64, high: f64) -> [DVec2; 2] {
     [DVec2::new(wide, from), DVec2::new(wide, to)]
 }
 
-/// A blade as a card: two halves along its midrib, of two triangles each, around its outline. Its texture is in this part of
-/// an atlas.
+/// Meshes a blade as a card: two halves along its midrib, of two triangles each, around its outline. Its texture is in
+/// this part of an atlas.
 pub(crate) fn card_mesh(blade: &Blade, part: [f64; 4]) -> TriMesh {
     let mut mesh = TriMesh::default();
     if blade.outline.len() < 3 || blade.outline.iter().any(|p| !p.is_finite()) {
@@ -398,7 +411,7 @@ pub(crate) fn card_mesh(blade: &Blade, part: [f64; 4]) -> TriMesh {
     mesh
 }
 
-/// Of a card of a blade, what is leaf, 0 to 1.
+/// Returns the share of a card of a blade that is leaf, 0 to 1.
 pub(crate) fn leaf_share(blade: &Blade) -> f64 {
     let flat = Blade { relief: Relief::default(), lift: Lift::Flat, ..blade.clone() };
     let mesh = card_mesh(&flat, [0.0, 0.0, 1.0, 1.0]);

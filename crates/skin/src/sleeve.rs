@@ -1,4 +1,4 @@
-//! Rings -> triangles: sides, closed ends, texture coordinates.
+//! Triangulates rings: sides, closed ends, texture coordinates.
 
 use base::ops;
 use glam::DVec3;
@@ -6,7 +6,7 @@ use mesh::TriMesh;
 
 use crate::rings::Ring;
 
-/// A vertex count as the index of the next vertex.
+/// Returns a vertex count as the index of the next vertex.
 pub(crate) fn index(n: usize) -> u32 {
     // Four billion vertices do not fit in memory: saturating keeps the arithmetic whole, validate() names it.
     u32::try_from(n).unwrap_or(u32::MAX)
@@ -35,19 +35,20 @@ impl Circle {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ribs {
     pub count: u32,
-    /// Depth of a furrow over the radius.
+    /// Depth of a furrow relative to the radius.
     pub depth: f64,
 }
 
 impl Ribs {
-    /// The sides of a regular polygon whose faces lie as deep as the furrows; `None` without ribs.
+    /// Returns the number of sides of a regular polygon whose faces lie as deep as the furrows; `None` without ribs.
     pub(crate) fn faces(self) -> Option<u32> {
         let turn = ops::acos_clamped(1.0 - self.depth).max(1e-3);
         (self.count > 0).then(|| ops::whole((ops::PI / turn).floor()).max(3))
     }
 
-    /// By the angle around the tube: the radius over that of the circle, and how far the normal leans forward around it.
-    fn at(self, angle: f64, share: f64) -> (f64, f64) {
+    /// Returns, by the angle around the tube, the radius relative to that of the circle, and the lean of the normal
+    /// around it.
+    fn radius_and_lean(self, angle: f64, share: f64) -> (f64, f64) {
         let depth = self.depth * share;
         let (sin, cos) = ops::sin_cos(angle * f64::from(self.count));
         let radius = 1.0 - 0.5 * depth * (1.0 + cos);
@@ -61,7 +62,7 @@ pub(crate) struct Sleeve<'a> {
     circle: &'a Circle,
     ribs: Ribs,
     repeats: f64,
-    /// Texture coordinate along, at the last row.
+    /// Texture coordinate along the tube, at the last row.
     v: f64,
     /// First vertex and centre of the last row.
     last: Option<(u32, DVec3)>,
@@ -87,21 +88,21 @@ impl<'a> Sleeve<'a> {
         Self { mesh, circle, ribs, repeats: f64::from(repeats.max(1)), v: 0.0, last: None }
     }
 
-    /// The same with ribs, four to each repetition of the texture.
+    /// Adds ribs, four to each repetition of the texture.
     pub(crate) fn ribbed(self, ribs: Ribs) -> Self {
         let repeats = if ribs.count > 0 { 0.25 * f64::from(ribs.count) } else { self.repeats };
         Self { ribs, repeats, ..self }
     }
 
-    /// By the column of a ring: the radius there over that of the ring, and the normal, given the ray, the normal of the plain
-    /// tube and the share of the depth of the furrows.
+    /// Returns, by the column of a ring, the radius relative to that of the ring, and the normal, given the ray, the
+    /// normal of the plain tube and the share of the depth of the furrows.
     fn corner(&self, ring: &Ring, column: usize, (ray, normal): (DVec3, DVec3), share: f64) -> (f64, DVec3) {
         if self.ribs.count == 0 {
             return (1.0, normal);
         }
         #[expect(clippy::cast_precision_loss, reason = "at most 64")]
         let angle = ops::TAU * column as f64 / self.sides();
-        let (radius, lean) = self.ribs.at(angle, share);
+        let (radius, lean) = self.ribs.radius_and_lean(angle, share);
         (radius, normal + ring.tangent.cross(ray) * lean)
     }
 
@@ -112,7 +113,7 @@ impl<'a> Sleeve<'a> {
         i
     }
 
-    /// The last vertex of a row: its first again, at the other edge of the texture.
+    /// Adds the last vertex of a row: its first again, at the opposite edge of the texture.
     fn seam(&mut self, first: u32, u: f64, v: f64) {
         let (p, n) = (self.mesh.positions[first as usize], self.mesh.normals[first as usize]);
         self.mesh.positions.push(p);
@@ -120,14 +121,14 @@ impl<'a> Sleeve<'a> {
         self.mesh.uvs.push(narrow2(u, v));
     }
 
-    /// Moves the texture on by a step along a tube of this radius.
+    /// Advances the texture by a step along a tube of this radius.
     fn advance(&mut self, centre: DVec3, radius: f64) {
         if let Some((_, before)) = self.last {
             self.v += centre.distance(before) * self.repeats / (ops::TAU * radius.max(1e-12));
         }
     }
 
-    /// A row from its corners (`sides + 1`, the last equal to the first) and their normals.
+    /// Adds a row from its corners (`sides + 1`, the last equal to the first) and their normals.
     pub(crate) fn row(&mut self, centre: DVec3, radius: f64, corners: &[DVec3], normals: &[DVec3]) {
         self.advance(centre, radius);
         let first = self.next();
@@ -151,14 +152,14 @@ impl<'a> Sleeve<'a> {
         index(self.mesh.positions.len())
     }
 
-    /// One row per ring.
+    /// Adds one row per ring.
     pub(crate) fn rings(&mut self, rings: &[Ring]) {
         let circle = self.circle;
         let du = self.repeats / self.sides();
-        // Towards a thin tip the texture would be squeezed without bound: a quarter of the first radius
-        // is as far as it follows.
+        // Towards a thin tip the texture would be squeezed without bound: it follows down to a quarter of the first
+        // radius.
         let floor = rings.first().map_or(0.0, |r| 0.25 * r.radius);
-        // What leaves a bearer is round there: its first ring is the top of its fillet.
+        // A tube on a bearer is round there: its first ring is the top of its fillet.
         let round = if self.last.is_some() { 0 } else { usize::MAX };
         for (row, ring) in rings.iter().enumerate() {
             self.advance(ring.centre, ring.radius.max(floor));
@@ -186,7 +187,7 @@ impl<'a> Sleeve<'a> {
         self.last = Some((first, centre));
     }
 
-    /// A flat disc that closes the tube behind its first ring; its rim has normals of its own.
+    /// Adds a flat disc that closes the tube behind its first ring; its rim has normals of its own.
     pub(crate) fn flat_base(&mut self, ring: &Ring) {
         let circle = self.circle;
         let normal = -ring.tangent;
@@ -203,8 +204,8 @@ impl<'a> Sleeve<'a> {
         }
     }
 
-    /// A cone that closes the tube behind the last row written, its point at `apex`: for ends that are hidden
-    /// inside another tube.
+    /// Adds a cone that closes the tube behind the last row, its point at `apex`: for ends that are hidden inside
+    /// another tube.
     pub(crate) fn hidden_base(&mut self, apex: DVec3, normal: DVec3) {
         let Some((first, _)) = self.last else { return };
         let tip = self.vertex(apex, normal, 0.5 * self.repeats, self.v);
@@ -213,8 +214,8 @@ impl<'a> Sleeve<'a> {
         }
     }
 
-    /// A row beyond the last ring: so wide and so far on, over its radius, with normals that lean from the ray towards the
-    /// tangent by an angle; each corner is further on by its own number.
+    /// Adds a row beyond the last ring: its width and its distance relative to the radius, with normals that lean from
+    /// the ray towards the tangent by an angle; each corner has an additional offset of its own.
     pub(crate) fn beyond(&mut self, end: &Ring, (width, rise, lean): (f64, f64, f64), further: &[f64]) {
         let circle = self.circle;
         let du = self.repeats / self.sides();
@@ -234,7 +235,7 @@ impl<'a> Sleeve<'a> {
         self.join(first, centre);
     }
 
-    /// Closes the tube behind the last row written, at `apex`.
+    /// Closes the tube behind the last row, at `apex`.
     pub(crate) fn close(&mut self, apex: DVec3, normal: DVec3) {
         let Some((first, _)) = self.last else { return };
         let du = self.repeats / self.sides();
@@ -271,7 +272,7 @@ impl<'a> Sleeve<'a> {
     }
 }
 
-/// Drops triangles two of whose corners coincide once rounded to the mesh's precision.
+/// Removes triangles two of whose corners coincide once rounded to the mesh's precision.
 pub(crate) fn drop_flat(mesh: &mut TriMesh) {
     let p = &mesh.positions;
     mesh.triangles.retain(|&[a, b, c]| {
@@ -287,9 +288,12 @@ mod tests {
     #[test]
     fn ribs_are_cut_into_the_circle_and_their_normals_stand_on_them() {
         let ribs = Ribs { count: 12, depth: 0.2 };
-        let r = |angle: f64| ribs.at(angle, 1.0).0;
+        let r = |angle: f64| ribs.radius_and_lean(angle, 1.0).0;
         assert!((r(0.0) - 0.8).abs() < 1e-12 && (r(ops::PI / 12.0) - 1.0).abs() < 1e-12);
-        assert_eq!((ribs.at(0.3, 0.0).0, ribs.faces(), Ribs::default().faces()), (1.0, Some(4), None));
+        assert_eq!(
+            (ribs.radius_and_lean(0.3, 0.0).0, ribs.faces(), Ribs::default().faces()),
+            (1.0, Some(4), None)
+        );
         for k in 0..40 {
             let angle = 0.05 * f64::from(k);
             let at = |a: f64| {
@@ -297,7 +301,7 @@ mod tests {
                 DVec3::new(cos, sin, 0.0)
             };
             let along = at(angle + 1e-6) * r(angle + 1e-6) - at(angle - 1e-6) * r(angle - 1e-6);
-            let normal = at(angle) + DVec3::Z.cross(at(angle)) * ribs.at(angle, 1.0).1;
+            let normal = at(angle) + DVec3::Z.cross(at(angle)) * ribs.radius_and_lean(angle, 1.0).1;
             assert!(along.normalize().dot(normal.normalize()).abs() < 1e-6, "{angle}");
         }
     }

@@ -1,18 +1,18 @@
 //! A plant as one closed body, for printers.
 //!
-//! `plant, meshes -> distance to wood and blades on a grid -> surface of that distance -> the body that stands on the foot`
+//! `plant, meshes -> distance to wood and blades on a grid -> surface of that distance -> the body on the foot`
 
 use base::{Cancelled, Run};
 use glam::DVec3;
 use mesh::{MaterialKind, Model, TriMesh};
 use plant::{AxisKind, Plant};
 
-/// How a body for printing is made.
+/// Settings of a body for printing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidSpec {
     /// Its height above the foot, metres, 0.01 to 2. Default 0.15.
     pub height_m: f64,
-    /// No part is thinner than this, metres, 0.0002 to 0.02: twigs and leaves that would be are thickened. Default 0.0015.
+    /// Least thickness of any part, metres, 0.0002 to 0.02: thinner twigs and leaves are thickened. Default 0.0015.
     pub wall_m: f64,
 }
 
@@ -27,24 +27,24 @@ impl Default for SolidSpec {
 pub struct Solid {
     /// Its surface, metres, standing on y = 0.
     pub mesh: TriMesh,
-    /// Bodies that hang on nothing and were left out.
+    /// Number of unconnected bodies that were left out.
     pub loose: usize,
-    /// How many times smaller than the plant it is.
+    /// Ratio of the size of the plant to that of the body.
     pub scale: f64,
 }
 
-/// Why there is no body.
+/// Reason why there is no body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolidError {
-    /// There is nothing above the ground.
+    /// The plant has nothing above the ground.
     #[error("the plant has nothing above the ground that could be printed")]
     Nothing,
-    /// The wall is too thin for so large a body.
+    /// The wall is too thin for a body of this size.
     #[error("a wall of {} mm is too thin for this print: make it at least {} mm, or the print smaller", *wall_m * 1e3, *least_m * 1e3)]
     TooFine {
-        /// What was asked for.
+        /// The requested wall, metres.
         wall_m: f64,
-        /// The thinnest that can be made.
+        /// The thinnest possible wall, metres.
         least_m: f64,
     },
     /// The user asked to stop.
@@ -54,14 +54,15 @@ pub enum SolidError {
 
 /// Most nodes of the grid: a quarter of a gigabyte.
 const MOST_NODES: f64 = 6.4e7;
-/// Nodes of the grid across the thinnest wall: a wall of two cells is seen by nodes wherever it lies.
+/// Nodes of the grid across the thinnest wall: a wall of two cells is detected at any position.
 const CELLS_A_WALL: f64 = 2.0;
-/// The foot is a disc of this radius over the height of the print, and at least so many times as wide as the stem.
+/// Least radius of the foot, a disc, relative to the height of the print.
 const FOOT_OF_HEIGHT: f64 = 0.12;
+/// Least radius of the foot relative to that of the stem.
 const FOOT_OF_STEM: f64 = 2.0;
-/// Its thickness in walls.
+/// Thickness of the foot in walls.
 const FOOT_WALLS: f64 = 2.0;
-/// Cells around the body that are outside for certain.
+/// Cells around the body that are certainly outside.
 const MARGIN: f64 = 3.0;
 
 /// Distances to a body at the nodes of a grid, negative inside.
@@ -105,11 +106,12 @@ impl Grid {
     }
 }
 
-/// A plant as one body: wood as it is, all that would be too thin thickened, on a round foot that is flat below.
+/// Makes a plant into one body: wood unchanged, thin parts thickened, on a round foot that is flat below.
 ///
-/// `model`: the plant's meshes, whose blades are taken; wood is that of the plant. What lies below the ground is left out.
-/// Guaranteed: the surface is closed and two-manifold, of one body without cavities; the same bits for any input that is the same.
-/// Not guaranteed: that it prints without supports. Cost: in proportion to the area of the plant over the square of the wall.
+/// `model`: the plant's meshes, from which the blades are taken; wood is that of the plant. Parts below the ground are
+/// left out. Guaranteed: the surface is closed and two-manifold, of one body without cavities; the same bits for equal
+/// input. Not guaranteed: that it prints without supports. Cost: in proportion to the area of the plant over the square
+/// of the wall.
 ///
 /// # Errors
 /// [`SolidError`].
@@ -138,7 +140,7 @@ pub fn solid(plant: &Plant, model: &Model, spec: &SolidSpec, run: &Run<'_>) -> R
     Ok(Solid { mesh: surface, loose, scale: 1.0 / scale })
 }
 
-/// The grid around a box from the ground up, all outside.
+/// Makes the grid around a box from the ground up, all outside.
 fn grid_of(low: DVec3, high: DVec3, wall: f64) -> Result<Grid, SolidError> {
     let low = DVec3::new(low.x, 0.0, low.z);
     let nodes = |wall: f64| {
@@ -166,7 +168,7 @@ fn grid_of(low: DVec3, high: DVec3, wall: f64) -> Result<Grid, SolidError> {
     Ok(Grid { origin, cell, size, distance: vec![far; size.iter().product()] })
 }
 
-/// Where the plant stands: the mean of the feet of its stems.
+/// Returns the position of the plant: the mean of the feet of its stems.
 fn base_of(plant: &Plant) -> DVec3 {
     let feet = plant.axes.iter().filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
     let feet: Vec<DVec3> =
@@ -174,7 +176,7 @@ fn base_of(plant: &Plant) -> DVec3 {
     if feet.is_empty() { DVec3::ZERO } else { feet.iter().sum::<DVec3>() / feet.len() as f64 }
 }
 
-/// Adds all axes; the reach of the stems on the ground about [`base_of`].
+/// Adds all axes; returns the reach of the stems on the ground about [`base_of`].
 fn add_wood(
     grid: &mut Grid,
     plant: &Plant,
@@ -195,7 +197,7 @@ fn add_wood(
         let mut before = axis.bearer.map(|b| b.index());
         for node in nodes {
             let from = before.unwrap_or(node);
-            // A twig is as thick at its foot as where it is its own.
+            // A twig is as thick at its foot as at the start of its own course.
             let near =
                 if plant.nodes.axis[from] == plant.nodes.axis[node] { radius(from) } else { radius(node) };
             let ends = [plant.nodes.position[from] * scale, plant.nodes.position[node] * scale];
@@ -206,7 +208,7 @@ fn add_wood(
     Ok(reach)
 }
 
-/// A rod with round ends.
+/// Adds a rod with round ends.
 fn add_rod(grid: &mut Grid, [a, b]: [DVec3; 2], [from, to]: [f64; 2]) {
     if !(a.is_finite() && b.is_finite() && from.is_finite() && to.is_finite()) {
         return;
@@ -219,7 +221,7 @@ fn add_rod(grid: &mut Grid, [a, b]: [DVec3; 2], [from, to]: [f64; 2]) {
     });
 }
 
-/// Adds what is no wood, a wall thick.
+/// Adds everything that is not wood, one wall thick.
 fn add_blades(
     grid: &mut Grid,
     model: &Model,
@@ -243,7 +245,7 @@ fn add_blades(
     Ok(())
 }
 
-/// The point of a triangle nearest to another (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+/// Returns the point of a triangle nearest to another (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
 fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -276,7 +278,7 @@ fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     if sum > 0.0 { a + ab * (vb / sum) + ac * (vc / sum) } else { a }
 }
 
-/// A round plate on the ground.
+/// Adds a round plate on the ground.
 fn add_foot(grid: &mut Grid, at: DVec3, radius: f64, height: f64) {
     let (low, high) =
         (DVec3::new(at.x - radius, 0.0, at.z - radius), DVec3::new(at.x + radius, height, at.z + radius));
@@ -286,7 +288,7 @@ fn add_foot(grid: &mut Grid, at: DVec3, radius: f64, height: f64) {
     });
 }
 
-/// Takes away what lies below the ground, along a plane half a cell below the nodes on it.
+/// Removes everything below the ground, along a plane half a cell below the nodes on it.
 fn cut(grid: &mut Grid) {
     #[expect(clippy::cast_possible_truncation, reason = "a grid of single precision")]
     let cell = grid.cell as f32;
@@ -307,14 +309,15 @@ fn cut(grid: &mut Grid) {
     }
 }
 
-/// The corners of a cube in the order of the bits x, y, z; six tetrahedra along its diagonal, which fit those of the next cube.
+/// Corners of a cube in the order of the bits x, y, z; six tetrahedra along its diagonal, which fit those of the next
+/// cube.
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 
-/// The surface where the distance is 0, by marching tetrahedra (Doi and Koide 1991): closed and two-manifold, since the
-/// distance is linear within each of them and outside at the border.
+/// Returns the surface where the distance is 0, by marching tetrahedra (Doi and Koide 1991): closed and two-manifold,
+/// since the distance is linear within each of them and outside at the border.
 fn surface_of(grid: &Grid, run: &Run<'_>) -> Result<TriMesh, SolidError> {
-    // A corner of a triangle lies between two nodes, the first of which comes first in the grid.
+    // A corner of a triangle lies between two nodes, the lower row first.
     let mut corners: Vec<[[u32; 2]; 3]> = Vec::new();
     let [nx, ny, nz] = grid.size;
     for k in 0..nz - 1 {
@@ -344,7 +347,7 @@ fn surface_of(grid: &Grid, run: &Run<'_>) -> Result<TriMesh, SolidError> {
     };
     for &[a, b] in &edges {
         let ((p, from), (q, to)) = (place(a), place(b));
-        // Away from the ends, so that no two corners come to lie on one point.
+        // Away from the ends, so that no two corners coincide.
         let t = (from / (from - to)).clamp(0.02, 0.98);
         #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
         mesh.positions.push(p.lerp(q, t).to_array().map(|x| x as f32));
@@ -354,12 +357,13 @@ fn surface_of(grid: &Grid, run: &Run<'_>) -> Result<TriMesh, SolidError> {
     Ok(mesh)
 }
 
-/// Even orders of four corners, which keep the sense of a tetrahedron: each corner first, and each pair.
+/// Even permutations of four corners, which keep the orientation of a tetrahedron: each corner first.
 const ALONE: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0]];
+/// The same with each pair first.
 const PAIRS: [[usize; 4]; 6] =
     [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 2, 0], [2, 3, 0, 1]];
 
-/// The triangles of a tetrahedron, which look outwards.
+/// Adds the triangles of a tetrahedron, facing outwards.
 fn tetrahedron(rows: [usize; 4], inside: [bool; 4], out: &mut Vec<[[u32; 2]; 3]>) {
     let edge = |a: usize, b: usize| {
         let ends = [rows[a].min(rows[b]), rows[a].max(rows[b])];
@@ -383,7 +387,7 @@ fn tetrahedron(rows: [usize; 4], inside: [bool; 4], out: &mut Vec<[[u32; 2]; 3]>
     }
 }
 
-/// Leaves the body that most triangles belong to; how many others there were, cavities among them.
+/// Keeps the body with the most triangles; returns the number of others, including cavities.
 fn keep_one(mesh: &mut TriMesh) -> usize {
     let mut parent: Vec<u32> = (0..).take(mesh.positions.len()).collect();
     fn root(parent: &mut [u32], mut x: u32) -> u32 {
@@ -432,7 +436,7 @@ mod tests {
     use plant::NodeId;
     use std::collections::BTreeMap;
 
-    /// A trunk with two branches, and a leaf on one of them, with one more that hangs in the air.
+    /// Makes a trunk with two branches, and a leaf on one of them, with one more that is unconnected.
     fn shrub() -> (Plant, Model) {
         let mut plant = Plant { name: "shrub".to_owned(), ..Plant::default() };
         let trunk = [DVec3::ZERO, DVec3::Y, 2.0 * DVec3::Y];
@@ -475,7 +479,7 @@ mod tests {
         let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
         for t in &made.mesh.triangles {
             for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-                // Each edge is gone along once each way.
+                // Each edge is traversed once in each direction.
                 *edges.entry([a.min(b), a.max(b)]).or_insert(0) += if a < b { 1 } else { 1000 };
             }
         }
@@ -490,7 +494,7 @@ mod tests {
         assert!(low.abs() < 1e-6 && (high - 0.1).abs() < 0.003, "{low} {high}");
         let flat = points().filter(|p| p[1] < 1e-6).count();
         assert!(flat > 200, "{flat} corners of a flat foot");
-        // The volume is that of rods and foot, and the sense of the surface outwards.
+        // The volume is that of rods and foot, and the surface faces outwards.
         let volume: f64 = made
             .mesh
             .triangles

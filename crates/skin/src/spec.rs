@@ -1,4 +1,4 @@
-//! What the caller may choose, and how triangles are shared out.
+//! Settings of the surface, and the distribution of triangles.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::natural::{BarkKind, VeinPattern};
 use crate::shoots::{FoliageStyle, Shoots};
 use crate::{Wearer, Worn};
 
-/// How a plant is given its surface. Saved with the document.
+/// Settings of a plant's surface. Saved with the document.
 ///
 /// ```
 /// let coarse = skin::SkinSpec { detail: 0.5, ..skin::SkinSpec::default() };
@@ -22,29 +22,28 @@ use crate::{Wearer, Worn};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SkinSpec {
-    /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade;
-    /// counts grow in proportion. In a crown of hundreds of branches each gets what its bends take. 0.1 to 8,
-    /// default 1.
+    /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade; counts
+    /// grow in proportion. In a crown of hundreds of branches each gets as many as its bends need. 0.1 to 8, default 1.
     #[schemars(range(min = 0.1, max = 8.0))]
     pub detail: f64,
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
     #[schemars(range(min = 3, max = 24))]
     pub sides: u32,
-    /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
+    /// Meshing of leaves of measured veins at `detail` 1. Set by the leaf, not saved here.
     #[serde(skip)]
     pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
     pub textures: bool,
-    /// Pixels of a side of the bark's textures and of the length of a leaf's, 64 to 4096. Chosen for an export, not saved.
-    /// Default 512.
+    /// Pixels of a side of the bark's textures and of the length of a leaf's, 64 to 4096. Chosen for an export, not
+    /// saved. Default 512.
     #[serde(skip)]
     pub texture_size: u32,
     /// The bark of a tree. Saved with the tree, not here. Default none: furrowed, brown.
     #[serde(skip)]
     pub bark: Option<BarkSpec>,
-    /// How the veins of its leaves run, which then have a surface of their own form. Saved with the tree, not here. Default
-    /// none: pinnate, on a form that suits any.
+    /// Course of the veins of its leaves, which then have a surface of their own form. Saved with the tree, not here.
+    /// Default none: pinnate, on a form that suits any.
     #[serde(skip)]
     pub venation: Option<VeinPattern>,
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
@@ -52,28 +51,28 @@ pub struct SkinSpec {
     /// Variation of hue and brightness from organ to organ, 0 (none) to 1 (default).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub variation: f64,
-    /// Also fill the columns that say how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
+    /// Also fill the columns that set how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
     /// export, not saved. Default false.
     #[serde(skip)]
     pub wind: bool,
-    /// Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not
-    /// to the day's, so that triangles are the same at every day. Default none.
+    /// Size in full bloom, metres, of a plant that changes from day to day: fineness is relative to that and not to the
+    /// day's size, so that triangles are the same on every day. Default none.
     pub steady_m: Option<f64>,
-    /// Of a coarser copy, the axes (without leaf stalks) and organs of the whole plant: what is left does not become
-    /// finer because there is less of it. Not saved. Default none: those of the plant itself.
+    /// Axes (without leaf stalks) and organs of the whole plant, for a coarser copy: its remaining parts do not become
+    /// finer because they are fewer. Not saved. Default none: those of the plant itself.
     #[serde(skip)]
     pub crowd: Option<[usize; 2]>,
-    /// How leaves of a flat form are drawn; by their outlines where there are no textures, and where they wear a material.
-    /// Shoots in needles are cards in any case where there are textures. Chosen for an export, not saved.
+    /// Drawing of leaves of a flat form; by their outlines if there are no textures, and if they wear a material.
+    /// Shoots in needles are always cards if there are textures. Chosen for an export, not saved.
     #[serde(skip)]
     pub foliage: FoliageStyle,
-    /// Shoots that cards of leaves may be of. Not saved. Default none.
+    /// Shoots for cards of several leaves. Not saved. Default none.
     #[serde(skip)]
     pub shoots: Option<Arc<Shoots>>,
-    /// Materials that a person gave to organs. Saved with the plant, not here. Default none.
+    /// Materials that a user gave to organs. Saved with the plant, not here. Default none.
     #[serde(skip)]
     pub worn: Worn,
-    /// What the variation and the choice of colours are drawn from, and the phases of the wind.
+    /// Seed of the variation, of the choice of colours, and of the phases of the wind.
     #[serde(skip)]
     pub seed: Seed,
 }
@@ -104,18 +103,18 @@ impl Default for SkinSpec {
 }
 
 impl SkinSpec {
-    /// Whether leaves are cards, those that are shoots in needles or the others.
+    /// Whether leaves are cards, for shoots in needles or for other leaves.
     pub(crate) fn cards(&self, needled: bool) -> bool {
         let wanted = self.foliage == FoliageStyle::Cards || needled;
         wanted && self.textures && self.worn.kinds[Wearer::Leaf as usize].is_none()
     }
 
-    /// The painted shoots that an atlas shows beside its leaf, of leaves that are shoots in needles or of others.
+    /// Returns the painted shoots that an atlas shows next to its leaf, for shoots in needles or for other leaves.
     pub(crate) fn shoots(&self, needled: bool) -> Option<&Shoots> {
         self.shoots.as_deref().filter(|s| s.leaf.needles.is_some() == needled)
     }
 
-    /// Cells of that atlas.
+    /// Returns the number of cells of that atlas.
     pub(crate) fn cells(&self, needled: bool) -> usize {
         1 + self.shoots(needled).map_or(0, |s| s.tiles.len())
     }
@@ -124,15 +123,15 @@ impl SkinSpec {
 /// The bark of a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarkSpec {
-    /// What it is like.
+    /// Its kind.
     pub kind: BarkKind,
-    /// Its colour on the whole; of birch that of its white.
+    /// Its mean colour; for birch that of its white.
     pub colour: Colour,
     /// The colour of twigs.
     pub twig: Colour,
     /// Ribs along thick stems, 0 to 32.
     pub ribs: u32,
-    /// Depth of the furrows between ribs over the radius, 0 to 0.5.
+    /// Depth of the furrows between ribs relative to the radius, 0 to 0.5.
     pub rib_depth: f64,
 }
 
@@ -149,8 +148,8 @@ impl Default for BarkSpec {
 }
 
 impl BarkSpec {
-    /// Kind and colour of wood: `twig` of thin twigs beside old wood, else of trunk and limbs.
-    pub(crate) const fn of(self, twig: bool) -> (BarkKind, Colour) {
+    /// Returns kind and colour of wood: `twig` for thin twigs in a plant with old wood, otherwise for trunk and limbs.
+    pub(crate) const fn kind_and_colour(self, twig: bool) -> (BarkKind, Colour) {
         match (twig, self.kind) {
             (false, kind) => (kind, self.colour),
             // A bamboo's twigs are canes, too, and a cactus's arms have ribs.
@@ -161,7 +160,7 @@ impl BarkSpec {
     }
 }
 
-/// How finely leaves of measured veins are meshed.
+/// Resolution of the mesh of leaves of measured veins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeafMeshSpec {
     /// Parts of each span between marks, 1 to 64. Default 5, as in Table 1 of Wang et al. (2011).
@@ -183,17 +182,18 @@ impl Default for LeafMeshSpec {
 }
 
 impl LeafMeshSpec {
-    /// About how many triangles a leaf with so many rows of marks has, from the numbers of Table 1.
+    /// Returns the approximate number of triangles of a leaf with this number of rows of marks, from the numbers of
+    /// Table 1.
     pub fn triangles(&self, rows: usize) -> u64 {
         let [rows, steps, sides] =
             [rows, self.subdivisions.clamp(1, 64), self.sides.clamp(3, 64)].map(|n| n as u64);
-        // Of 7 spans of veins (9 with the margin) and 6 columns of the blade a row, two a quad.
+        // 7 spans of veins (9 with the margin) and 6 columns of the blade per row, two triangles per quad.
         let spans = if self.margin { 9 } else { 7 };
         2 * rows * (spans * steps * sides + 6 * steps * steps)
     }
 
-    /// Coarser or finer: triangles in proportion to `detail`, 1 as it is.
-    pub(crate) fn at(self, detail: f64) -> Self {
+    /// Returns a coarser or finer spec: triangles in proportion to `detail`, 1 for the same.
+    pub(crate) fn with_detail(self, detail: f64) -> Self {
         let times = |n: usize, low: f64| {
             #[expect(clippy::cast_precision_loss, reason = "at most 64")]
             let wanted = (n as f64 * detail.sqrt()).round();
@@ -244,7 +244,7 @@ impl PetalColor {
         Self::Magenta,
     ];
 
-    /// The word used in material names.
+    /// Returns the word used in material names.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Pink => "pink",
@@ -260,7 +260,7 @@ impl PetalColor {
 }
 
 impl PetalColor {
-    /// The mean of a petal of this colour, linear RGB.
+    /// Returns the mean of a petal of this colour, linear RGB.
     pub const fn linear(self) -> [f32; 3] {
         match self {
             Self::Pink => [0.80, 0.33, 0.42],
@@ -274,10 +274,10 @@ impl PetalColor {
         }
     }
 
-    /// The colour of the petals of a plant that have no colour of their own.
-    pub fn of(plant: &Plant, spec: &SkinSpec) -> Self {
-        // Rays round a disc are a daisy's or a sunflower's, which are never blue or red. Of what was drawn, the disc
-        // says so and not the number of petals: one petal more or less would change the colour of all.
+    /// Returns the colour of the petals of a plant that have no colour of their own.
+    pub fn for_plant(plant: &Plant, spec: &SkinSpec) -> Self {
+        // Rays around a disc belong to a daisy or a sunflower, which is never blue or red. In a drawing the disc
+        // decides and not the number of petals: one petal more or less would change the colour of all.
         const RAYS: [PetalColor; 4] =
             [PetalColor::Yellow, PetalColor::White, PetalColor::Orange, PetalColor::Yellow];
         let key = plant.name.bytes().fold(spec.seed, |key, b| key.child(u64::from(b)));
@@ -294,7 +294,7 @@ impl PetalColor {
     }
 }
 
-/// How many triangles one axis or one blade of a given plant should have.
+/// Number of triangles for one axis or one blade of a given plant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
     pub detail: f64,
@@ -308,22 +308,23 @@ pub(crate) struct Budget {
 
 // The paper's sketch (a) has 33.4 rings a branch; collar and tip are part of them.
 const RINGS: f64 = 32.0;
-// Above these totals (at detail 1) axes and blades share: a crown of thousands of twigs and leaves stays a
-// model that a game or a page can hold, while every sketch of the paper's Table 1 stays below.
+// Totals (at detail 1) above which axes and blades share: a crown of thousands of twigs and leaves stays a model that a
+// game or a page can hold, while every sketch of the paper's Table 1 stays below.
 const ALL_RINGS: f64 = 2_600.0;
 const ALL_BLADES: f64 = 64_000.0;
-// Beyond this many blades each is one of a crowd and the sum falls too.
+// Number of blades beyond which each is one of a crowd and the sum decreases too.
 const CROWD: f64 = 200.0;
 
-// Share of the plant's size that is too small to be seen.
+// Share of the plant's size below which details are invisible.
 const TOLERANCE: f64 = 7e-4;
 
-// From so many axes or blades on, a plant is a tree in leaf rather than a drawing: twigs and leaves are a crowd.
+// Number of axes from which a plant is a tree in leaf rather than a drawing: twigs are a crowd.
 const CROWN_AXES: f64 = 150.0;
+// Number of blades from which they are a crowd.
 const CROWN_BLADES: f64 = 1500.0;
-// Triangles of a crown's leaf, as a share of what its margin would need.
+// Triangles of a crown's leaf, as a share of the number that its margin would need.
 const LEAN: f64 = 0.55;
-// From so many blades on, each has fewer triangles: small leaves are many, and are seen from farther away.
+// Number of blades from which each has fewer triangles: small leaves are many, and are seen from farther away.
 const MANY_BLADES: f64 = 16_000.0;
 
 impl Budget {
@@ -332,9 +333,10 @@ impl Budget {
         self.blades > CROWN_BLADES
     }
 
-    /// Triangles of a crown's leaf whose margin would need `least` to be seen from near by.
+    /// Returns the triangles of a crown's leaf whose margin would need `least` when seen from near by.
     ///
-    /// 8 for a plain leaf, 12 for an oak's, 22 for a bundle of needles; down to a quarter of that where there are very many.
+    /// 8 for a plain leaf, 12 for an oak's, 22 for a bundle of needles; down to a quarter of that where there are very
+    /// many.
     pub(crate) fn lean_triangles(&self, least: f64) -> f64 {
         LEAN * least * (MANY_BLADES / self.blades).sqrt().clamp(0.25, 1.0) * self.detail
     }
@@ -353,32 +355,32 @@ impl Budget {
         }
     }
 
-    /// Diagonal of the plant's box, metres.
+    /// Returns the diagonal of the plant's box, metres.
     pub(crate) fn size(&self) -> f64 {
         self.size
     }
 
-    /// Rings of an axis, collar and tip included: by the square root of its length, so that a twig is
-    /// coarser than a trunk but not as much as it is shorter.
+    /// Returns the rings of an axis, including collar and tip: by the square root of its length, so that a twig is
+    /// coarser than a trunk but less than in proportion to its length.
     pub(crate) fn rings(&self, length: f64) -> f64 {
         let share = (ALL_RINGS / self.axes).min(RINGS);
         let relative = (length / self.axis_length).clamp(0.0, 16.0).sqrt();
         (share * relative * self.detail).clamp(4.0, 600.0)
     }
 
-    /// Whether a twig of a crown is so thin that its ends cannot be seen where the whole plant is.
+    /// Whether a twig of a crown is so thin that its ends are invisible in a view of the whole plant.
     pub(crate) fn unseen(&self, radius: f64) -> bool {
         self.axes > CROWN_AXES && radius * self.detail < 0.7 * TOLERANCE * self.size
     }
 
-    /// How far wood as it is drawn may depart from the plant's where its radius is `radius`, metres: 0.07 % of the
-    /// plant's size, and no farther than what hangs on a thin twig would hang free of it.
+    /// Returns the tolerance between drawn wood and the plant's at a radius of `radius`, metres: 0.07 % of the plant's
+    /// size, and at most the radius, so that organs on a thin twig stay attached.
     pub(crate) fn tolerance(&self, radius: f64) -> f64 {
         (TOLERANCE * self.size).min(radius) / self.detail
     }
 
-    /// Sides of an axis of this radius: enough that its polygon departs from the circle by less than 0.07 %
-    /// of the plant's size, even, `least` to 24.
+    /// Returns the sides of an axis of this radius: enough that its polygon deviates from the circle by less than 0.07
+    /// % of the plant's size, even, `least` to 24.
     pub(crate) fn sides(&self, radius: f64, least: u32) -> u32 {
         let crowded = if self.axes > ALL_RINGS / RINGS { 2.0 } else { 0.0 };
         let floor = (f64::from(least.clamp(3, 24)) * self.detail.min(1.0) - crowded).max(3.0);
@@ -393,17 +395,17 @@ impl Budget {
         base::ops::whole(round.clamp(floor, 24.0_f64.max(floor)).ceil())
     }
 
-    /// Triangles of a blade with this area (m2, at the size at which it is placed).
+    /// Returns the triangles of a blade with this area (m2, at the size at which it is placed).
     ///
-    /// By the fourth root of its area relative to the plant's box: Table 1's six large petals have 780 each,
-    /// its 142 leaves 408, its 126 small ones 251. Where many blades share a plant each gets less, down to 14:
-    /// enough for a midrib and a margin, so that even crown leaves fold.
+    /// By the fourth root of its area relative to the plant's box: Table 1's six large petals have 780 each, its 142
+    /// leaves 408, its 126 small ones 251. If many blades share a plant each gets fewer, down to 14: enough for a
+    /// midrib and a margin, so that even crown leaves fold.
     pub(crate) fn blade_triangles(&self, area: f64) -> f64 {
         let relative = (area / (self.size * self.size)).clamp(1e-6, 1.0);
         let by_size = 780.0 * base::ops::powf(relative / 0.04, 0.3);
         let crowd = base::ops::powf((CROWD / self.blades).min(1.0), 0.4);
         let by_count = (crowd * ALL_BLADES / self.blades).max(14.0);
-        // Far away, where a whole level is made for an eighth of the size, a blade may be two kites.
+        // Far away, where a whole level is an eighth of the size, a blade may be two kites.
         let least = (32.0 * self.detail).clamp(4.0, 8.0);
         (by_size.clamp(32.0, 1200.0).min(by_count) * self.detail).clamp(least, 20_000.0)
     }
@@ -415,7 +417,7 @@ mod tests {
     use glam::DVec3;
     use plant::{Flower, FlowerId, Frame, Organ, Paint, Shape};
 
-    /// A flower with petals, and with a disc that was drawn or not.
+    /// Makes a flower with petals, and with a disc that was drawn or not.
     fn flower(petals: u32, disc: Option<u32>) -> Plant {
         let mut plant = Plant { name: "daisy".to_owned(), ..Plant::default() };
         plant.flowers.push(Flower {
@@ -451,9 +453,9 @@ mod tests {
         for seed in 1..=12 {
             let spec = SkinSpec { seed: Seed::new(seed), ..SkinSpec::default() };
             for disc in [None, Some(99)] {
-                let color = PetalColor::of(&flower(3, disc), &spec);
+                let color = PetalColor::for_plant(&flower(3, disc), &spec);
                 for petals in 4..20 {
-                    let other = PetalColor::of(&flower(petals, disc), &spec);
+                    let other = PetalColor::for_plant(&flower(petals, disc), &spec);
                     assert_eq!(other, color, "{petals} petals, seed {seed}");
                 }
                 let daisy = !matches!(color, PetalColor::Blue | PetalColor::Red);

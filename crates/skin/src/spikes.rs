@@ -1,7 +1,7 @@
-//! Compound leaves and bundles of needles of a crowd: a kite for each leaflet or needle, a triangle where there are few, as many as
-//! there may be.
+//! Compound leaves and bundles of needles of a crown: a kite for each leaflet or needle, or a triangle at a low limit,
+//! as many as the limit allows.
 //!
-//! `Blade -> lobes between its bays -> those that stay, wider -> triangles`
+//! `Blade -> lobes between its bays -> a wider selection of them -> triangles`
 
 use glam::DVec2;
 use mesh::TriMesh;
@@ -10,13 +10,14 @@ use plant::Blade;
 use crate::blade::BladeChart;
 use crate::sleeve::{drop_flat, narrow2};
 
-/// A blade that fills less of its margin without bays is leaflets or needles rather than one surface.
+/// Share of its margin without bays below which a blade is leaflets or needles rather than one surface.
 const COMPOUND: f64 = 0.6;
-/// Fewer lobes than this are one leaf with lobes, as a maple's.
+/// Least number of lobes of a compound leaf: fewer are one leaf with lobes, as in maple.
 const FEW_LOBES: usize = 6;
-/// A lobe that stands for several is at most so wide over its length before it becomes longer, too.
+/// Largest ratio of width to length of a lobe that represents several, before it becomes longer, too.
 const STOUT: f64 = 0.3;
-/// Inner corners of a lobe this near the straight line between its neighbours are no bays, as a share of the blade's length.
+/// Depth of inner corners of a lobe, relative to the straight line between their neighbours, below which they are not
+/// bays, as a share of the blade's length.
 const SHALLOW: f64 = 1e-3;
 
 /// One leaflet or needle: a triangle from its root to its tip.
@@ -24,18 +25,18 @@ const SHALLOW: f64 = 1e-3;
 struct Lobe {
     root: DVec2,
     tip: DVec2,
-    /// Where it is widest, as a share of the way from root to tip, and on which side.
+    /// Position of its greatest width, as a share of the length from root to tip, and its side.
     wide_at: f64,
     side: f64,
     area: f64,
 }
 
-/// With so many triangles for each lobe it is a kite, on both sides of its midrib.
+/// Triangles per lobe from which it is a kite, on both sides of its midrib.
 const FOR_KITES: f64 = 1.5;
 
-/// A compound blade in at most about so many triangles, one for each of its leaflets or needles, or two for each; those that
-/// stay are as much wider, and then longer, as all of them together cover. None of a blade of another form, and none of one
-/// that is to be no `wider` and has more lobes.
+/// Meshes a compound blade in at most about this number of triangles, one or two for each of its leaflets or needles;
+/// the selected ones are wider, and then longer, to cover the area of all of them. `None` for a blade of another form,
+/// and for one that must not be `wider` and has more lobes.
 pub(crate) fn spikes(blade: &Blade, closed: &[DVec2], triangles: f64, wider: bool) -> Option<TriMesh> {
     let outline = &blade.outline;
     let area = geom::signed_area(outline);
@@ -67,16 +68,16 @@ pub(crate) fn spikes(blade: &Blade, closed: &[DVec2], triangles: f64, wider: boo
     (!mesh.triangles.is_empty()).then_some(mesh)
 }
 
-/// More would take long.
+/// Most lobes, as more would take long.
 const MOST_LOBES: usize = 200;
 
-/// `wanted` of `n`, in the middle of as many equal parts.
+/// Returns `wanted` indices of `n`, in the middles of equal parts.
 fn evenly(n: usize, wanted: usize) -> Vec<usize> {
     let wanted = wanted.min(n).max(1);
     (0..wanted).map(|i| (2 * i + 1) * n / (2 * wanted)).collect()
 }
 
-/// What lies between one bay and the next, all around from the root.
+/// Returns the parts between one bay and the next, all around from the root.
 fn lobes(outline: &[DVec2], shallow: f64) -> Vec<Lobe> {
     let n = outline.len();
     let inner = |k: &usize| {
@@ -84,14 +85,14 @@ fn lobes(outline: &[DVec2], shallow: f64) -> Vec<Lobe> {
         let chord = c - a;
         chord.perp_dot(b - a) > shallow * chord.length()
     };
-    // Counter-clockwise, so a corner left of the way past it lies inwards.
+    // Counter-clockwise, so a corner to the left of the path past it is concave.
     let bays: Vec<usize> =
         core::iter::once(0).chain((1..n).filter(inner)).chain(core::iter::once(n)).collect();
-    bays.windows(2).enumerate().filter_map(|(k, w)| Lobe::of(outline, w[0], w[1], k % 2 == 0)).collect()
+    bays.windows(2).enumerate().filter_map(|(k, w)| Lobe::measure(outline, w[0], w[1], k % 2 == 0)).collect()
 }
 
 impl Lobe {
-    fn of(outline: &[DVec2], from: usize, to: usize, other: bool) -> Option<Self> {
+    fn measure(outline: &[DVec2], from: usize, to: usize, other: bool) -> Option<Self> {
         let corners: Vec<DVec2> = (from..=to).map(|k| outline[k % outline.len()]).collect();
         let root = 0.5 * (corners[0] + *corners.last()?);
         let tip = corners.iter().copied().max_by(|a, b| root.distance(*a).total_cmp(&root.distance(*b)))?;
@@ -106,7 +107,7 @@ impl Lobe {
         Some(Self { root, tip, wide_at: (along.dot(*widest - root) / length).clamp(0.0, 1.0), side, area })
     }
 
-    /// A triangle or a kite, counter-clockwise, with so many times the lobe's area.
+    /// Returns a triangle or a kite, counter-clockwise, with `times` the lobe's area.
     fn corners(&self, times: f64, kite: bool) -> Vec<DVec2> {
         let along = self.tip - self.root;
         let width = 2.0 * times * self.area / along.length_squared();
@@ -166,7 +167,7 @@ mod tests {
                 matches!(form, BladeForm::Tuft | BladeForm::Brush | BladeForm::Pinnate | BladeForm::Feather);
             let blade = form.blade();
             assert_eq!(spikes(&blade, &closed(&blade), 4.0, true).is_some(), compound, "{form:?}");
-            // No wider than it is, only where each lobe has its own.
+            // If it must not be wider, it works only if each lobe has its own triangle.
             assert!(spikes(&blade, &closed(&blade), 4.0, false).is_none(), "{form:?}");
             assert_eq!(spikes(&blade, &closed(&blade), 40.0, false).is_some(), compound, "{form:?}");
         }

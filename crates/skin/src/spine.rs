@@ -1,10 +1,9 @@
-//! Nodes of an axis -> a smooth, densely sampled centre line with radii; that line as it is drawn.
+//! Smooth, densely sampled centre lines with radii through the nodes of an axis; and these lines as drawn.
 
 use glam::DVec3;
 
 /// A centre line: samples of position, unit tangent, radius and arc length, straight between them. At least 2 samples,
-/// length > 0. Dense as it comes from [`Spine::new`]; as it is drawn one sample for each ring, with the arc lengths of
-/// the dense line.
+/// length > 0. Dense from [`Spine::new`]; as drawn one sample for each ring, with the arc lengths of the dense line.
 #[derive(Clone, Debug)]
 pub(crate) struct Spine {
     pub p: Vec<DVec3>,
@@ -23,14 +22,14 @@ pub(crate) struct Station {
     pub centre: DVec3,
     pub tangent: DVec3,
     pub radius: f64,
-    /// Change of radius per metre along.
+    /// Change of radius per metre along the line.
     pub slope: f64,
 }
 
-/// Where the fillet lies along a branch.
+/// Position of the fillet along a branch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
-    /// Where the centre line leaves the bearer.
+    /// Station where the centre line leaves the bearer.
     pub exit: Station,
     /// The bearer's arc length there.
     pub on: f64,
@@ -38,20 +37,21 @@ pub(crate) struct Reach {
     pub top: f64,
 }
 
-// Radii below this share of the axis's length are drawn as that: a line without width has no surface.
+// Least radius, as a share of the axis's length: a line without width has no surface.
 const THINNEST: f64 = 1.0 / 2000.0;
-// Rings fold over one another where radius x curvature passes 1; stay below.
+// Largest radius x curvature: rings fold over one another at 1.
 const TIGHTEST: f64 = 0.7;
 
-/// What rises by less than this share of its length at its foot does not stand on the ground: 45 degrees off the plumb line.
+/// Least vertical component of the direction at the foot of an axis that stands on the ground: 45 degrees off the
+/// vertical.
 const STANDS: f64 = 0.7;
 
 impl Spine {
-    /// The curve through `points`, in about `samples` pieces; `first` replaces the first tangent.
+    /// Makes the curve through `points`, in about `samples` pieces; `first` replaces the first tangent.
     ///
-    /// Points that are not finite or repeat their predecessor are dropped; `None` when fewer than 2 remain.
-    /// Missing radii are the last one given. Where the axis bends more sharply than its thickness allows, the
-    /// line is eased, ends kept.
+    /// Points that are not finite or repeat their predecessor are dropped; `None` when fewer than 2 remain. Missing
+    /// radii equal the last one given. Where the axis bends more sharply than its thickness allows, the line is
+    /// smoothed, ends kept.
     pub(crate) fn new(points: &[DVec3], radii: &[f64], samples: usize, first: Option<DVec3>) -> Option<Self> {
         let (keep, total) = clean(points);
         if keep.len() < 2 {
@@ -76,7 +76,7 @@ impl Spine {
         };
         for k in 0..q.len() - 1 {
             let h = q[k].distance(q[k + 1]);
-            // No finer than a quarter of the radius: finer steps only copy the jitter of a hand.
+            // No finer than a quarter of the radius: finer steps only copy the jitter of the pen.
             let want = step.max(0.25 * rq[k].min(rq[k + 1]));
             let pieces = base::ops::whole((h / want).ceil().clamp(1.0, 512.0));
             spine.knots.push((spine.p.len(), keep[k]));
@@ -120,7 +120,7 @@ impl Spine {
         }
     }
 
-    /// Swells the base as trunks do where they meet the ground: by a share, over so many radii.
+    /// Swells the base as trunks do at the ground: by a share, over a number of radii.
     pub(crate) fn root_flare(&mut self, (wider, over): (f64, f64)) {
         let base = self.r[0];
         for (r, s) in self.r.iter_mut().zip(&self.s) {
@@ -129,20 +129,20 @@ impl Spine {
         }
     }
 
-    /// Makes the first cross-section level, so that a leaning trunk meets the ground all round. What lies more than it
-    /// stands is left as it is.
+    /// Makes the first cross-section horizontal, so that a leaning trunk meets the ground all round. An axis that lies
+    /// more than it stands is not changed.
     pub(crate) fn stand(&mut self) {
         if self.t[0].y > STANDS {
             self.t[0] = DVec3::Y;
         }
     }
 
-    /// The radius an eighth of the way up: past the collar or root flare.
+    /// Returns the radius an eighth of the way up: past the collar or root flare.
     pub(crate) fn stout(&self) -> f64 {
         self.r[self.r.len() / 8]
     }
 
-    /// The larger of [`Spine::stout`] and the radius half way up: a body may be drawn with a narrow foot.
+    /// Returns the larger of [`Spine::stout`] and the radius half way up: a body may be drawn with a narrow foot.
     pub(crate) fn stoutest(&self) -> f64 {
         self.stout().max(self.r[self.r.len() / 2])
     }
@@ -151,17 +151,17 @@ impl Spine {
         self.s.last().copied().unwrap_or(0.0)
     }
 
-    /// The station at arc length `s`, clamped to the ends.
-    pub(crate) fn at(&self, s: f64) -> Station {
+    /// Returns the station at arc length `s`, clamped to the ends.
+    pub(crate) fn station_at(&self, s: f64) -> Station {
         self.station(self.piece(s), s)
     }
 
-    /// The piece in which arc length `s` lies.
+    /// Returns the piece in which arc length `s` lies.
     pub(crate) fn piece(&self, s: f64) -> usize {
         self.s.partition_point(|&x| x <= s).clamp(1, self.s.len() - 1) - 1
     }
 
-    /// The station at arc length `s` of piece `i`.
+    /// Returns the station at arc length `s` of piece `i`.
     pub(crate) fn station(&self, i: usize, s: f64) -> Station {
         let h = self.s[i + 1] - self.s[i];
         let u = if h > 0.0 { ((s - self.s[i]) / h).clamp(0.0, 1.0) } else { 0.0 };
@@ -175,13 +175,13 @@ impl Spine {
         }
     }
 
-    /// The station nearest to `p`, found downhill from piece `hint`; also its piece, as the next hint.
+    /// Returns the station nearest to `p`, found downhill from piece `hint`; also its piece, as the next hint.
     pub(crate) fn nearest(&self, p: DVec3, hint: usize) -> (Station, usize) {
         let (_, s, k) = self.foot(p, hint);
         (self.station(k, s), k)
     }
 
-    /// How far `p` lies outside the line's surface, the arc length of the foot and its piece.
+    /// Returns how far `p` lies outside the line's surface, the arc length of the foot and its piece.
     pub(crate) fn outside(&self, p: DVec3, hint: usize) -> (f64, f64, usize) {
         let (square, s, k) = self.foot(p, hint);
         let h = self.s[k + 1] - self.s[k];
@@ -189,7 +189,7 @@ impl Spine {
         (square.sqrt() - base::ops::lerp(self.r[k], self.r[k + 1], u), s, k)
     }
 
-    /// The squared distance of the nearest point, its arc length and piece.
+    /// Returns the squared distance of the nearest point, its arc length and piece.
     fn foot(&self, p: DVec3, hint: usize) -> (f64, f64, usize) {
         let last = self.p.len() - 2;
         let foot = |k: usize| {
@@ -200,8 +200,8 @@ impl Spine {
         };
         let mut k = hint.min(last);
         let (mut best, mut at) = foot(k);
-        // Downhill in both directions; the first step decides. Pieces share their ends: a foot there may belong to
-        // the next piece as well, so that equal distances go on.
+        // Downhill in both directions; the first step decides. Pieces share their ends: a foot there may belong to the
+        // next piece as well, so that the search continues at equal distances.
         let up = at >= 1.0 && k < last;
         while at <= 0.0 || at >= 1.0 {
             let next = if up { k + 1 } else { k.wrapping_sub(1) };
@@ -218,7 +218,7 @@ impl Spine {
     }
 }
 
-/// Indices of the points to keep, and the length of the line through them.
+/// Returns the indices of the points to keep, and the length of the line through them.
 fn clean(points: &[DVec3]) -> (Vec<usize>, f64) {
     let rough: f64 =
         points.windows(2).map(|w| w[0].distance(w[1])).filter(|d| d.is_finite()).fold(0.0, |sum, d| sum + d);
@@ -243,7 +243,7 @@ fn clean(points: &[DVec3]) -> (Vec<usize>, f64) {
     (keep, total)
 }
 
-/// Three-point parabola tangents, chord-length parameter, never longer than 1.
+/// Computes three-point parabola tangents, chord-length parameter, never longer than 1.
 fn tangents(q: &[DVec3], first: Option<DVec3>) -> Vec<DVec3> {
     let n = q.len();
     let chord = |k: usize| (q[k + 1] - q[k]).normalize_or_zero();
@@ -273,7 +273,7 @@ fn hermite(p: DVec3, m: DVec3, q: DVec3, n: DVec3, u: f64) -> DVec3 {
     p * (2.0 * u3 - 3.0 * u2 + 1.0) + m * (u3 - 2.0 * u2 + u) + q * (3.0 * u2 - 2.0 * u3) + n * (u3 - u2)
 }
 
-/// Two passes of (1 2 1)/4: a change of taper at a node should not show as a ridge.
+/// Smooths by two passes of (1 2 1)/4: a change of taper at a node should not show as a ridge.
 fn smooth_radii(r: &mut [f64]) {
     for _ in 0..2 {
         let mut before = r[0];
@@ -285,7 +285,7 @@ fn smooth_radii(r: &mut [f64]) {
     }
 }
 
-/// Moves samples towards their neighbours' middle wherever radius x curvature passes [`TIGHTEST`].
+/// Moves samples towards the middle of their neighbours wherever radius x curvature exceeds [`TIGHTEST`].
 fn ease_sharp_bends(p: &mut [DVec3], r: &[f64]) {
     let n = p.len();
     // 48: a right angle of a line as thick as 20 samples is round after about 40 passes.
@@ -299,7 +299,7 @@ fn ease_sharp_bends(p: &mut [DVec3], r: &[f64]) {
             let b = p[i + 1] - here;
             let next = b.length();
             let most = TIGHTEST * 0.5 * (length + next);
-            // |turn| / chord, by the small angle's chord: 2 sin(turn / 2). It is 2 at most: thin lines need no look.
+            // |turn| / chord, by the small angle's chord: 2 sin(turn / 2). It is 2 at most: thin lines need no test.
             if 2.000_001 * r[i] > most
                 && (b.normalize_or_zero() - a.normalize_or_zero()).length() * r[i] > most
             {

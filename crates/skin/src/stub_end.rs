@@ -1,4 +1,5 @@
-//! How stubs end: broken off, in a rim of bark around a knot, or in one around a hollow. Wood without bark is a mesh of its own.
+//! Ends of stubs: broken off, in a rim of bark around a knot, or in one around a hollow. Wood without bark is a mesh of
+//! its own.
 
 use base::{Draw, Seed, ops};
 use mesh::TriMesh;
@@ -8,34 +9,35 @@ use crate::rings::Ring;
 use crate::sleeve::{Circle, Sleeve, narrow2, wide};
 use crate::spine::Station;
 
-/// How a tube ends.
+/// End of a tube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum End {
     Round,
-    /// Where it broke off, by a seed of its own.
+    /// Broken off, with a seed of its own.
     Broken(Seed),
-    /// In a rim of bark around a dark bottom so deep, metres.
+    /// In a rim of bark around a dark bottom of this depth, metres.
     Rim(f64),
     /// In a rim of bark around the mouth of a cavity in the stem.
     Hollow(Opening),
 }
 
-/// A stub that ends thicker than this share of its thickness broke off or is a rim; others are round.
+/// Least thickness of the end of a stub, relative to its own, at which it broke off or is a rim; others are round.
 const THICK: f64 = 0.3;
-/// The depth of a hollow, over how far its rim stands out.
+/// Depth of a knot's bottom relative to the height of its rim.
 const DEEP: f64 = 0.75;
-/// How long splinters are at most, in radii.
+/// Longest splinters, in radii.
 const SPLINTER: f64 = 1.1;
-/// How much darker it is for each radius of depth: the power of e.
+/// Exponential darkening for each radius of depth.
 const SHADE: f64 = 6.0;
-/// How wide the wood within the bark is, over the radius.
+/// Radius of the wood within the bark, relative to that of the stub.
 const WOOD: f64 = 0.84;
-/// The roll of bark around a mouth: width and rise over the radius, and the lean of the normals.
+/// The roll of bark around a mouth: width and rise relative to the radius, and the lean of the normals.
 const ROLL: [(f64, f64, f64); 3] = [(0.95, 0.07, 0.7), (0.84, 0.09, 1.5), (MOUTH, 0.0, 2.4)];
 
 impl End {
-    /// Of a stub with such a key that stands out so far and grows from one radius to the other, metres: one that ends thick broke
-    /// off there, and one that is shorter than thick is the rim that grew around what rotted away.
+    /// Returns the end of a stub with a key that stands out by `beyond` and narrows from `stout` to `radius`, metres:
+    /// one with a thick end broke off there, and one that is shorter than thick is the rim that grew around a rotted
+    /// branch.
     pub(crate) fn of_stub(key: u64, beyond: f64, stout: f64, radius: f64) -> Self {
         if radius < THICK * stout {
             Self::Round
@@ -50,8 +52,8 @@ impl End {
         matches!(self, Self::Broken(_))
     }
 
-    /// Closes a tube behind its last ring; wood without bark, if any, becomes a mesh with colours. Triangles: sides times twice
-    /// the rows of both and one.
+    /// Closes a tube behind its last ring; wood without bark, if any, becomes a mesh with colours. Triangles: sides
+    /// times twice the rows of both and one.
     pub(crate) fn close(
         self,
         out: &mut Sleeve<'_>,
@@ -95,7 +97,8 @@ impl End {
     }
 }
 
-/// Lays bark over what rises from the bark of a bearer as it lies there, not around it: `scale` repetitions a metre.
+/// Lays the bark of the bearer over a scar on it, along the bearer and not around the scar: `scale` repetitions a
+/// metre.
 pub(crate) fn lay_bark(mesh: &mut TriMesh, exit: &Station, bearer: &Station, scale: f64) {
     let up = bearer.tangent;
     let side = up.cross(exit.tangent).normalize_or_zero();
@@ -105,10 +108,11 @@ pub(crate) fn lay_bark(mesh: &mut TriMesh, exit: &Station, bearer: &Station, sca
     }
 }
 
-/// A row of a face: its width and rise over the radius, the lean of its normals, and how far each corner lies further on.
+/// A row of a face: its width and rise relative to the radius, the lean of its normals, and the additional offset of
+/// each corner.
 type FaceRow<'a> = (f64, f64, f64, &'a Vec<f64>);
 
-/// The wood within, from its edge to its middle, darker the deeper it lies.
+/// Makes the wood within, from its edge to its middle, darker with depth.
 fn face(last: &Ring, circle: &Circle, rows: &[FaceRow<'_>], middle: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     let mut out = Sleeve::new(&mut mesh, circle, 1);
@@ -128,7 +132,7 @@ fn face(last: &Ring, circle: &Circle, rows: &[FaceRow<'_>], middle: f64) -> TriM
     mesh
 }
 
-/// Lets the face of a stub move with its bark, where that moves.
+/// Moves the face of a stub with its bark, if that moves.
 pub(crate) fn follow(face: &mut TriMesh, bark: &TriMesh) {
     let n = face.positions.len();
     if let Some((wind, pivot)) = bark.wind.last().zip(bark.pivots.last()) {

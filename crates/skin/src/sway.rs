@@ -1,4 +1,4 @@
-//! Wind as moving joints: one for each limb, from the columns that shaders have.
+//! Wind as moving joints: one for each limb, from the columns for shaders.
 //!
 //! `model with wind columns -> Rig`
 
@@ -10,43 +10,45 @@ use mesh::{Hold, Joint, Model, Rig};
 
 use crate::sleeve::wide;
 
-/// How far the wind moves the top of a plant that sways, metres: a tenth of its height, out of the axes so that no limb lies in
-/// the wind.
+/// Returns the displacement of the top of a swaying plant, metres: a tenth of its height, off the axes so that no limb
+/// is parallel to the wind.
 pub fn gust(model: &Model) -> DVec3 {
     DVec3::new(0.0966, 0.0, 0.0258) * model.bounds().size().y
 }
 
-/// Most limbs with a joint of their own: those that swing farthest. The others go with the trunk.
+/// Most limbs with a joint of their own: those with the widest swing. The others move with the trunk.
 const MOST_LIMBS: usize = 120;
 /// Keys of a loop, the last as the first.
 const KEYS: u32 = 33;
-/// How fast the trunk sways, radians a second. The shader of the docs has 1.1; so it comes out even with the limbs.
+/// Angular frequency of the trunk, radians a second. The shader of the docs has 1.1; this one is commensurate with the
+/// limbs.
 const TRUNK: f64 = 1.15;
+/// Angular frequency of the limbs, radians a second.
 const LIMBS: f64 = 2.3;
-/// Part of a limb's swing that goes up and down: one that points into the wind moves, too.
+/// Vertical share of a limb's swing: a limb that points into the wind moves, too.
 const LIFT: f64 = 0.3;
-/// The widest swing of a limb, radians: beyond, it would be seen that it is stiff.
+/// Widest swing of a limb, radians: beyond it its stiffness would be visible.
 const WIDEST: f64 = 0.35;
 
-/// What is known of a limb.
+/// Data of a limb.
 #[derive(Clone, Copy, Debug)]
 struct Limb {
     foot: DVec3,
     /// The largest weight.
     most: f32,
-    /// Where its weight lies: sums of weighted places and of weights.
+    /// Centroid of its weight: sums of weighted positions and of weights.
     middle: DVec3,
     weight: f64,
 }
 
-/// Joints that move a model as the wind of its columns ([`SkinSpec::wind`](crate::SkinSpec::wind)) does, in a loop of five
-/// and a half seconds: one at the ground that stands, one that sways with all of the plant, and one at the foot of each limb,
-/// 120 limbs at most. `gust` is how far the top moves in it, metres; the shader of the docs has a tenth of the height.
+/// Makes joints that move a model as the wind of its columns ([`SkinSpec::wind`](crate::SkinSpec::wind)) does, in a
+/// loop of five and a half seconds: a static one at the ground, one that sways with the whole plant, and one at the
+/// foot of each limb, at most 120 limbs. `gust` is the displacement of the top, metres; the shader of the docs has a
+/// tenth of the height.
 ///
-/// Guaranteed: what is held by a limb's joint at its foot moves as the bearer does there; shares of vertices add up to 1; the
-/// last key is the first; the same bits everywhere.
-/// Not guaranteed: flutter of single leaves, for which a vertex has no joint. `None` of a model without those columns.
-/// Cost: linear in vertices.
+/// Guaranteed: vertices held by a limb's joint at its foot move as the bearer does there; shares of vertices add up to
+/// 1; the last key is the first; the same bits everywhere. Not guaranteed: flutter of single leaves, for which a vertex
+/// has no joint. `None` for a model without those columns. Cost: linear in vertices.
 pub fn sway(model: &Model, gust: DVec3) -> Option<Rig> {
     let blown = |p: &&mesh::Part| !p.mesh.positions.is_empty();
     let complete = |p: &mesh::Part| {
@@ -91,8 +93,8 @@ pub fn sway(model: &Model, gust: DVec3) -> Option<Rig> {
         let out = middle - limb.foot;
         let up = DVec3::Y * (LIFT * gust.length());
         let axis = out.cross(gust + up).try_normalize();
-        // Where weights grow with the square of the way, their middle is three quarters of the way out. The tip of weight w is
-        // held by its joint with the root of w, and is to move by w times the gust.
+        // Where weights grow with the square of the length, their centroid is three quarters of the way out. The tip of
+        // weight w is held by its joint with the root of w, and must move by w times the gust.
         let tip = out.length().max(1e-9) / 0.75;
         let wide = (f64::from(limb.most).sqrt() * gust.length() / tip).min(WIDEST);
         let phase = f64::from(f32::from_bits(*phase));
@@ -118,7 +120,7 @@ pub fn sway(model: &Model, gust: DVec3) -> Option<Rig> {
     })
 }
 
-/// Heights of the ground and of the top, by what sways.
+/// Returns the heights of the ground and of the top, by the weights of sway.
 fn top(model: &Model) -> (f64, f64) {
     let bounds = model.bounds();
     let still = model.parts.iter().flat_map(|p| p.mesh.positions.iter().zip(&p.mesh.wind));
@@ -128,13 +130,13 @@ fn top(model: &Model) -> (f64, f64) {
     (if ground.is_finite() { ground } else { bounds.min.y }, bounds.max.y)
 }
 
-/// Limbs by their phase, those that swing farthest first.
+/// Returns the limbs by their phase, those with the widest swing first.
 fn limbs(model: &Model) -> Vec<(u32, Limb)> {
     let mut found: BTreeMap<u32, Limb> = BTreeMap::new();
     for part in &model.parts {
         let mesh = &part.mesh;
         for ((p, wind), pivot) in mesh.positions.iter().zip(&mesh.wind).zip(&mesh.pivots) {
-            // Wood knows the foot of its limb; of leaves the pivot is their own.
+            // The pivot of wood is the foot of its limb; that of leaves is their own.
             let wood = wind[2] == 0.0 && !model.material(part).double_sided;
             if wind[1] <= 0.0 || !wood {
                 continue;

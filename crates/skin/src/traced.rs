@@ -1,5 +1,5 @@
-//! Organs that were traced over a photograph take its pixels: their texture coordinates are their place in the front
-//! view, which is where they were drawn.
+//! Organs that were traced over a photograph take its pixels: their texture coordinates are their positions in the
+//! front view, in which they were drawn.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use mesh::{Texture, TriMesh};
 use crate::sleeve::{narrow2, wide};
 use crate::spine::Spine;
 
-// Hands trace a little outside an edge: organs take what lies this much nearer to their middle.
+// Factor on the distance from an organ's centre at which it takes its pixels: users trace slightly outside an edge.
 const INSET: f64 = 0.95;
-// A tube shows the middle of its stroke only: what lies beside a thin stem is not the stem.
+// Share of the width of its stroke that a tube shows: the pixels next to a thin stem are background.
 const ACROSS: f64 = 0.5;
 
 /// A photograph in the plant's plane.
@@ -28,7 +28,7 @@ pub struct Traced {
 }
 
 impl Traced {
-    /// Whether what was read from a stroke was traced.
+    /// Whether an organ read from a stroke was traced.
     pub(crate) fn has(&self, source: Option<u32>) -> bool {
         source.is_some_and(|s| self.strokes.contains_key(&s))
     }
@@ -38,7 +38,7 @@ impl Traced {
         narrow2(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0))
     }
 
-    /// Texture coordinates of the vertices from `first` on: one organ.
+    /// Sets texture coordinates of the vertices from `first` on: one organ.
     pub(crate) fn organ(&self, mesh: &mut TriMesh, first: usize) {
         let places = mesh.positions.get(first..).unwrap_or_default();
         #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
@@ -47,7 +47,7 @@ impl Traced {
         mesh.uvs.extend(places.iter().map(|&p| self.uv(middle + (wide(p) - middle) * INSET)));
     }
 
-    /// Texture coordinates of a tube around `spine`.
+    /// Sets texture coordinates of a tube around `spine`.
     pub(crate) fn tube(&self, mesh: &mut TriMesh, spine: &Spine) {
         let mut hint = 0;
         mesh.uvs.clear();

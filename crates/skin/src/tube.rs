@@ -1,4 +1,4 @@
-//! A line with radii -> a closed tube.
+//! A closed tube around a line with radii.
 
 use glam::DVec3;
 use mesh::TriMesh;
@@ -7,15 +7,15 @@ use crate::rings::{drawn, rings};
 use crate::sleeve::{Circle, Sleeve, drop_flat};
 use crate::spine::Spine;
 
-/// How a [`tube`] is made.
+/// Settings of a [`tube`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubeSpec {
     /// Sides of the cross-section, 3 to 64.
     pub sides: u32,
-    /// Cross-sections along the tube, 2 or more; fewer are made where they would stand closer than about a
-    /// third of the radius.
+    /// Cross-sections along the tube, 2 or more; fewer are made if they would stand closer than about a third of the
+    /// radius.
     pub rings: u32,
-    /// How often the texture repeats around the tube, 1 or more.
+    /// Repetitions of the texture around the tube, 1 or more.
     pub repeats: u32,
 }
 
@@ -25,13 +25,13 @@ impl Default for TubeSpec {
     }
 }
 
-/// A closed tube around a smooth line through `points`, with a radius at each, both in metres.
+/// Makes a closed tube around a smooth line through `points`, with a radius at each, both in metres.
 ///
-/// Guaranteed: unit normals; finite for any input; the surface is closed, its base flat, its end round (beyond
-/// the last point by nine tenths of the radius); u runs around from 0 to `repeats` with the first column
-/// repeated, v along it in the same measure, so that texels are square. Points that are not finite or repeat
-/// are left out; fewer than 2 points give an empty mesh. Radii below 1/2000 of the length are drawn as that.
-/// Not guaranteed: that parts of a line that passes near itself stay apart.
+/// Guaranteed: unit normals; finite for any input; the surface is closed, its base flat, its end round (beyond the last
+/// point by nine tenths of the radius); u runs around from 0 to `repeats` with the first column repeated, v along it in
+/// the same measure, so that texels are square. Points that are not finite or repeat are left out; fewer than 2 points
+/// give an empty mesh. Radii below 1/2000 of the length are raised to that. Not guaranteed: that parts of a line that
+/// passes near itself stay apart.
 ///
 /// ```
 /// use glam::DVec3;

@@ -1,9 +1,9 @@
-//! How wind moves each vertex: weights, phases and pivots.
+//! Movement of each vertex in the wind: weights, phases and pivots.
 //!
-//! `chains, spines -> way along the wood from each limb's foot -> columns of tubes and organs`
+//! `chains, spines -> length along the wood from each limb's foot -> columns of tubes and organs`
 //!
 //! A *limb* is a branch that the main axis bears, with all that hangs on it. It moves as one: its wood and leaves share
-//! one phase, and their weight grows with the way along the wood from the limb's foot, over all forks. So whatever a
+//! one phase, and their weight grows with the length along the wood from the limb's foot, over all forks. So whatever a
 //! shader makes of the weights, a branch cannot part from its bearer, nor a leaf from its twig. On main axes and roots
 //! the weight is 0: they sway with the whole plant, by height.
 
@@ -16,23 +16,23 @@ use crate::fork::Bearer;
 use crate::sleeve::{narrow, wide};
 use crate::spine::{Reach, Spine};
 
-/// What a chain of axes has to know.
+/// Data of a chain of axes.
 #[derive(Clone, Copy, Debug)]
 struct Member {
-    /// Metres along the wood from the limb's foot to this chain's; `None` where only the whole plant sways.
+    /// Length along the wood from the limb's foot to this chain's, metres; `None` if only the whole plant sways.
     from: Option<f64>,
-    /// Where its centre line leaves its bearer, as an arc length.
+    /// Arc length at which its centre line leaves its bearer.
     exit: f64,
     pivot: DVec3,
     phase: f32,
 }
 
-/// A chain as the wind sees it.
+/// A chain as the input of the wind.
 #[derive(Debug)]
 pub(crate) struct Wood<'a> {
-    /// What bears it, and the chain that that is.
+    /// Its bearer, and the chain of that.
     pub bearer: Option<(Bearer<'a>, usize)>,
-    /// Where it leaves that.
+    /// Its fillet on the bearer.
     pub reach: Option<Reach>,
     pub borne: bool,
     /// Key of its first axis.
@@ -47,17 +47,17 @@ pub(crate) struct Wind<'a> {
     seed: Seed,
     ground: f64,
     height: f64,
-    /// The longest way from a limb's foot to a tip, or half of the height where that is longer, metres.
+    /// The greatest length from a limb's foot to a tip, or half of the height if that is more, metres.
     longest: f64,
     members: Vec<Member>,
-    /// The chain of each axis, and the number of its first node among the chain's points.
+    /// The chain of each axis, and the index of its first node among the chain's points.
     places: Vec<(usize, usize)>,
-    /// The way from the limb's foot to each node.
+    /// Length from the limb's foot to each node.
     nodes: Vec<f64>,
 }
 
 impl<'a> Wind<'a> {
-    /// Measures the plant. `woods` are the chains in their order, `places` says where each axis went.
+    /// Measures the plant. `woods` are the chains in their order, `places` gives the position of each axis.
     pub(crate) fn new(
         plant: &'a Plant,
         seed: Seed,
@@ -112,7 +112,7 @@ impl<'a> Wind<'a> {
         let limb = Member { from: Some(0.0), ..own };
         let Some((bearer, host)) = &wood.bearer else { return limb };
         let limb = Member { exit: wood.reach.map_or(0.0, |r| r.exit.s), ..limb };
-        // A bearer comes before what it bears; where it does not, the branch is a limb of its own.
+        // A bearer comes before its branches; otherwise the branch is a limb of its own.
         let Some(host) = self.members.get(*host).filter(|_| *host < chain) else { return limb };
         let Some(start) = host.from else { return limb };
         let inside = || bearer.spine.s.get(bearer.sample).copied().unwrap_or(0.0);
@@ -128,7 +128,7 @@ impl<'a> Wind<'a> {
         share(self.seed.child(key).stream(Draw::Wind).uniform())
     }
 
-    /// Sway of the whole plant at a height: of a mast that is held by the ground.
+    /// Returns the sway of the whole plant at a height, like a mast held by the ground.
     fn sway(&self, y: f32) -> f32 {
         if self.height <= 0.0 {
             return 0.0;
@@ -137,7 +137,7 @@ impl<'a> Wind<'a> {
         share(h * h)
     }
 
-    /// Weight of a limb's sway: of a mast again, held at the limb's foot.
+    /// Returns the weight of a limb's sway, again like a mast, held at the limb's foot.
     fn reach(&self, way: f64) -> f32 {
         if self.longest <= 0.0 {
             return 0.0;
@@ -146,8 +146,8 @@ impl<'a> Wind<'a> {
         share(t * t)
     }
 
-    /// Rows of vertices that a tube should have at least. Weights are curved along the wood and straight between rows:
-    /// without enough of them a trunk would part from what it bears.
+    /// Returns the least number of rows of vertices of a tube. Weights are curved along the wood and linear between
+    /// rows: without enough of them a trunk would part from its branches.
     pub(crate) fn rows(&self, chain: usize, spine: &Spine) -> f64 {
         let (low, high) = spine.p.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.y), b.max(p.y)));
         let of = |x: f64, whole: f64| if whole > 0.0 { (x / whole).clamp(0.0, 1.0) } else { 0.0 };
@@ -185,7 +185,7 @@ impl<'a> Wind<'a> {
         mesh.wind = rows.map(|(p, &way)| [self.sway(p[1]), self.reach(way), 0.0, member.phase]).collect();
     }
 
-    /// The way from the limb's foot to each vertex of a tube, in the order in which `Sleeve` writes them.
+    /// Returns the length from the limb's foot to each vertex of a tube, in the order in which `Sleeve` writes them.
     fn ways(
         &self,
         mesh: &TriMesh,
@@ -196,7 +196,7 @@ impl<'a> Wind<'a> {
     ) -> Vec<f64> {
         let n = mesh.positions.len();
         let width = sides + 1;
-        // The foot, or the flat base, has one vertex more than its corners: the middle.
+        // The foot, or the flat base, has one vertex more than its corners: the centre.
         let base = fillet.map_or(1 + sides, |(rows, ..)| rows * width + 1);
         let mut ways = vec![from; base.min(n)];
         let mut hint = 0;
@@ -217,7 +217,7 @@ impl<'a> Wind<'a> {
         }
         ways.resize(n, from + (spine.length() - exit).max(0.0));
         if let Some((rows, bearer, host)) = fillet {
-            // The foot goes with the bearer wherever it lies on it, the top with the branch.
+            // The foot moves with the bearer wherever it lies on it, the top with the branch.
             let held = self.members.get(host).and_then(|m| Some((m.from?, m.exit)));
             let mut near = bearer.sample;
             for (i, p) in mesh.positions.iter().enumerate().take(base) {
@@ -240,7 +240,7 @@ impl<'a> Wind<'a> {
         let member = organ.bearer.and_then(|b| {
             let axis = self.plant.nodes.axis.get(b.index())?;
             let member = self.members.get(self.places.get(axis.index())?.0)?;
-            // It hangs where its bearer is: its own weight would tear it off.
+            // It moves with its bearer: its own weight would tear it off.
             member.from.map(|_| (self.reach(self.way(b)), member.phase))
         });
         let (reach, phase) = member.unwrap_or_else(|| (0.0, self.phase(organ.key)));
@@ -252,7 +252,8 @@ impl<'a> Wind<'a> {
     }
 }
 
-/// How much each vertex of a shape flutters, 0 to 1: a blade from its root (0) to its tip and margin, other shapes not.
+/// Returns the flutter of each vertex of a shape, 0 to 1: a blade from its root (0) to its tip and margin, other shapes
+/// not.
 pub(crate) fn flutter(shape: &Shape, mesh: &TriMesh) -> Vec<f32> {
     let n = mesh.positions.len();
     if !matches!(shape, Shape::Blade(_) | Shape::Spline(_) | Shape::Sheet(_)) {
@@ -268,7 +269,8 @@ pub(crate) fn flutter(shape: &Shape, mesh: &TriMesh) -> Vec<f32> {
     mesh.positions.iter().enumerate().map(weight).collect()
 }
 
-/// Where the plant leaves the ground: the lowest foot of an axis that stands on it; y = 0 where there is none.
+/// Returns the height at which the plant leaves the ground: the lowest foot of an axis that stands on it; y = 0 if
+/// there is none.
 fn ground(plant: &Plant, bounds: &Bounds) -> f64 {
     let feet = plant.axes.iter().filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
     let feet = feet.filter_map(|a| plant.nodes.position.get(a.nodes.start as usize));
@@ -282,13 +284,13 @@ fn ground(plant: &Plant, bounds: &Bounds) -> f64 {
     }
 }
 
-/// The sample at an input point of a spine; points that were dropped have that of the next.
+/// Returns the sample at an input point of a spine; dropped points have that of the next.
 pub(crate) fn sample(spine: &Spine, input: usize) -> usize {
     let at = spine.knots.partition_point(|&(_, kept)| kept < input);
     spine.knots.get(at).or(spine.knots.last()).map_or(0, |&(sample, _)| sample)
 }
 
-/// Arc length of the point of a spine nearest to `p`, and the hint for the next.
+/// Returns the arc length of the point of a spine nearest to `p`, and the hint for the next.
 fn along(spine: &Spine, p: DVec3, hint: usize) -> (f64, usize) {
     let (station, piece) = spine.nearest(p, hint);
     (station.s, piece)

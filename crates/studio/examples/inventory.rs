@@ -1,10 +1,10 @@
-//! A maker of its own in one file: trees of a stand from the rows of an inventory.
+//! A custom maker in one file: trees of a stand from the rows of an inventory.
 //!
-//! `cargo run --example inventory -p burgeon [INVENTORY.csv [FOLDER]]`. A row is `preset,x_m,z_m,height_m,crown_m`; without
-//! a file a small stand is made.
+//! `cargo run --example inventory -p burgeon [INVENTORY.csv [FOLDER]]`. A row is `preset,x_m,z_m,height_m,crown_m`;
+//! without a file a small stand is made.
 //!
-//! A maker turns a description into a [`Plant`](burgeon::plant::Plant) and leaves the rest to those who read plants. This
-//! one lets a species grow, makes it as high as its tree was measured, and as wide as its crown.
+//! A maker turns a description into a [`Plant`](burgeon::plant::Plant) and leaves the rest to the readers of plants.
+//! This one grows a species and scales it to the measured height of its tree and the width of its crown.
 
 use std::path::PathBuf;
 
@@ -17,11 +17,11 @@ use burgeon::{Preset, Run, Seed, TreeOptions, make_tree};
 /// One tree of an inventory.
 struct Row {
     preset: &'static Preset,
-    /// Where it stands, how high it is, and the diameter of its crown, metres.
+    /// Position x and z, height, and diameter of its crown, metres.
     numbers: [f64; 4],
 }
 
-/// The description: rows of the file, or what is wrong with one.
+/// Reads the description: the rows of the file, or the fault of one.
 fn read(text: &str) -> Result<Vec<Row>, String> {
     let rows = text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).filter(|(_, l)| !l.is_empty());
     let row = |(line, text): (usize, &str)| {
@@ -39,7 +39,7 @@ fn read(text: &str) -> Result<Vec<Row>, String> {
     rows.map(row).collect()
 }
 
-/// The maker: a plant as high and as wide as its row says, at its place.
+/// Makes a plant as high and as wide as its row says, at its place.
 fn make(row: &Row, seed: Seed, run: &Run<'_>) -> Result<Plant, Box<dyn std::error::Error>> {
     let [x, z, height, crown] = row.numbers;
     let mut plant = make_tree(&row.preset.spec()?, seed, &TreeOptions::default(), run)?.grown.plant;
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let run = Run::plain();
     for (k, row) in (0_u64..).zip(read(&text)?) {
         let plant = make(&row, Seed::new(1).child(k), &run)?;
-        // All that reads plants now reads this one: meshes, structure, measures.
+        // Every reader of plants now accepts this one: meshes, structure, measures.
         let model = skin(&plant, &SkinSpec { detail: 0.2, textures: false, ..SkinSpec::default() }, &run)?;
         let path = folder.join(format!("inventory-{k}"));
         write_glb(&model, std::fs::File::create(path.with_extension("glb"))?)?;

@@ -1,8 +1,8 @@
-//! A stand of one kind of tree: how far its trees differ, and how each grows up.
+//! A stand of one kind of tree: the variation among its trees, and the growth of each.
 //!
 //! `cargo run --release --example stand -p burgeon -- SPEC [--seeds N] [--ages A,B,..] [--png SHEET.png [--at AGE]]`.
 //! SPEC is a preset or a TOML file. Prints means and coefficients of variation of height, diameter at breast height and
-//! crown area, and what one seed is at each age; with `--png` also nine seeds side by side.
+//! crown area, and the measures of one seed at each age; with `--png` also nine seeds in one picture.
 
 #![expect(clippy::print_stdout, reason = "it tells what it measured")]
 
@@ -13,8 +13,8 @@ use burgeon::render::{PictureSpec, contact_sheet, render};
 use burgeon::spec::from_toml;
 use burgeon::{Preset, Report, Run, Seed, TreeOptions, TreeSpec, make_tree, tree_blade};
 
-/// Mean and coefficient of variation of those that have such a measure.
-fn told(values: &[f64]) -> String {
+/// Formats the mean and coefficient of variation of a measure, or `none` without values.
+fn mean_and_variation(values: &[f64]) -> String {
     if values.is_empty() {
         return "none".into();
     }
@@ -67,7 +67,7 @@ fn main() -> Result<(), String> {
         }
     }
     if seeds > 0 {
-        let [h, d, c, l] = rows.map(|r| told(&r));
+        let [h, d, c, l] = rows.map(|r| mean_and_variation(&r));
         println!("{what}: height {h} m, dbh {d} m, crown {c} m2, leaf area index {l}");
     }
     for age in option("--ages").unwrap_or_default().split(',').filter_map(|a| a.parse().ok()) {

@@ -1,4 +1,4 @@
-//! The control balls of a leaf of a document where they stand, for hands that move them.
+//! Control balls of a leaf of a document, in their places, for hands that move them.
 
 use document::LeafMaker;
 use glam::DVec3;
@@ -16,25 +16,25 @@ pub struct LeafBall {
     pub row: u32,
     /// As in `BallMove`.
     pub mark: u32,
-    /// Where it is, in the coordinates of the leaf, metres.
+    /// Position in the coordinates of the leaf, metres.
     pub at: [f64; 3],
-    /// Of the thickest vein there, metres; 0 where there is none.
+    /// Radius of the thickest vein there, metres; 0 where there is none.
     pub radius_m: f64,
 }
 
-/// All control balls of a leaf, bent as it is, and the directions in which they are moved.
+/// All control balls of a leaf in its bent form, and the directions in which they are moved.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LeafBalls {
-    /// The tip first, then row by row; of chief veins vein by vein.
+    /// Balls with the tip first, then row by row; for chief veins, vein by vein.
     pub balls: Vec<LeafBall>,
     /// Unit vectors of the first, second and third number of `BallMove::by_m`.
     pub sides: [[f64; 3]; 3],
 }
 
-/// The control balls of a leaf as it stands in a document.
+/// Returns the control balls of a leaf as it stands in a document.
 ///
 /// # Errors
-/// [`SceneError`]: why it makes no leaf.
+/// [`SceneError`]: the reason why it makes no leaf.
 pub fn leaf_balls(maker: &LeafMaker) -> Result<LeafBalls, SceneError> {
     let (input, options) = leaf_input(maker)?;
     Ok(match &input {

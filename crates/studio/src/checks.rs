@@ -1,7 +1,7 @@
-//! Plausibility: whether a person would accept what was made, for all makers.
+//! Plausibility: whether a person would accept a result, for all makers.
 //!
-//! Each check is a measured value against one of [`PLAUSIBLE`]; makers add their own facts. The table of them is in
-//! `docs/limits.md`.
+//! Each check compares a measured value with one of [`PLAUSIBLE`]; makers add their own facts. The table of checks is
+//! in `docs/limits.md`.
 
 use base::{Bound, Check, Report, Severity, ops};
 use bloom::{GrowthLaw, Quantity, RegionLaw};
@@ -10,79 +10,84 @@ use glam::DVec3;
 use growth::{Method, TreeSpec};
 use ink::Ink;
 use plant::{OrganKind, Plant};
-use reading::{OrganWord, Reading};
+use reading::{Kind, OrganWord, Reading};
 use scan::{PipeSource, ScanTally};
 
 use crate::report::{GrowthReport, LeafReport, ReadingReport};
 
-/// Between which values results are plausible.
+/// Limits between which results are plausible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlausibilityLimits {
     /// The longest side of a plant, metres: trees could reach 122 to 130 m (Koch et al., Nature 428, 2004).
     pub size_most_m: f64,
-    /// The longest side of a plant, metres: the smallest flowering plants, of the genus Wolffia, are half a millimetre long. A
-    /// round bound below them.
+    /// The longest side of a plant, metres: the smallest flowering plants, of the genus Wolffia, are half a millimetre
+    /// long. A round bound below them.
     pub size_least_m: f64,
-    /// The length of a leaf on a plant, metres: the longest that was measured, of the palm Raphia regalis, had 25.11 m. A round
-    /// bound above it.
+    /// The length of a leaf on a plant, metres: the longest that was measured, of the palm Raphia regalis, had 25.11 m.
+    /// A round bound above it.
     pub leaf_most_m: f64,
-    /// The length of a blade in one piece, metres: those of the banana Musa ingens have 5 m (Argent, Notes from the Royal Botanic
-    /// Garden Edinburgh 35, 1976).
+    /// The length of a blade in one piece, metres: those of the banana Musa ingens have 5 m (Argent, Notes from the
+    /// Royal Botanic Garden Edinburgh 35, 1976).
     pub blade_most_m: f64,
-    /// The length of a leaf that is measured, metres: less than a millimetre is a unit that is wrong.
+    /// The length of a measured leaf, metres: less than a millimetre is a wrong unit.
     pub blade_least_m: f64,
-    /// The height of a stem over that at which a column of wood as thick as its foot would buckle under its own weight. Culms are
-    /// hollow: a reed of 4 m and 1 cm has 1.08. A round bound above it.
+    /// The height of a stem, as a multiple of that at which a column of wood as thick as its foot would buckle under
+    /// its own weight. Culms are hollow: a reed of 4 m and 1 cm has 1.08. A round bound above it.
     pub slender_most: f64,
-    /// The volume of the shoot over the cube of the plant's longest side: a cactus that is a ball has 0.52.
+    /// The volume of the shoot over the cube of the plant's longest side: a spherical cactus has 0.52.
     pub volume_most: f64,
-    /// The same of a plant of more than [`Self::tall_m`]: a tree of 22 m whose trunk is a cylinder of 10 m across and 11 m high, as
-    /// stout as a baobab, has 0.081.
+    /// The same for a plant larger than [`Self::tall_m`]: a tree of 22 m whose trunk is a cylinder of 10 m across and
+    /// 11 m high, as stout as a baobab, has 0.081.
     pub wood_most: f64,
-    /// What is no ball any more, metres: the largest barrel cacti, of Echinocactus platyacanthus, have 2.5 m, one has 2.95 m.
+    /// Size above which a plant is no longer a sphere, metres: the largest barrel cacti, of Echinocactus platyacanthus,
+    /// have 2.5 m, one has 2.95 m.
     pub tall_m: f64,
-    /// One side of all leaves over the square of the plant's longest side: leaf area indices are 18 at most (Asner, Scurlock and
-    /// Hicke, Global Ecology and Biogeography 12, 2003), and no crown is wider than the longest side. A round bound above it.
+    /// One side of all leaves over the square of the plant's longest side: leaf area indices are 18 at most (Asner,
+    /// Scurlock and Hicke, Global Ecology and Biogeography 12, 2003), and no crown is wider than the longest side. A
+    /// round bound above it.
     pub leaf_area_most: f64,
     /// The share of the input that may stay unused: ink, points, stages.
     pub unused_most: f64,
-    /// The plant's front over the drawing, or the tree's box over its points, by their diagonals: half of it is missing.
+    /// Least diagonal of the plant's front over that of the drawing, or of the tree's box over that of its points: half
+    /// of it is missing.
     pub extent_least: f64,
-    /// The same: half of it is too much.
+    /// Largest value of the same ratio: half of it is too much.
     pub extent_most: f64,
-    /// How likely a reading is right: of 42 drawings by people below this, 18 were read right (`docs/strokes.md`).
+    /// Least probability that a reading is right: of 42 drawings by people below this, 18 were read right
+    /// (`docs/strokes.md`).
     pub score_least: f64,
-    /// The height of a tree of a scan, metres: what is lower is a seedling, or in another unit.
+    /// The height of a tree of a scan, metres: a lower one is a seedling, or in another unit.
     pub tree_least_m: f64,
-    /// The share of a scan's rings whose radius was seen: the others have that of the pipe model.
+    /// The share of a scan's rings whose radius was seen: the others have the radius of the pipe model.
     pub circles_least: f64,
-    /// Trunks in a scan of which one was taken, unless somebody said which.
+    /// Most trunks in a scan from which one was chosen, unless somebody chose it.
     pub stems_most: f64,
-    /// The share of a tree's points that hang together with nothing that stands: its crown beyond a gap.
+    /// The share of a tree's points that are connected to nothing on the ground: its crown beyond a gap.
     pub loose_most: f64,
     /// The height of a tree over that of the highest point that may be its own.
     pub top_least: f64,
     /// The share of a tree's points near its wood, or in its leaves.
     pub explained_least: f64,
-    /// The volume of all wood over that of a cylinder of its height and diameter at 1.3 m: stems alone have 0.3 to 0.6 (Kramer and
-    /// Akca, Leitfaden zur Waldmesslehre, 1995), and branches of broad crowns are as much again at most. Round bounds beyond.
+    /// Least volume of all wood over that of a cylinder of its height and diameter at 1.3 m: stems alone have 0.3 to
+    /// 0.6 (Kramer and Akca, Leitfaden zur Waldmesslehre, 1995), and branches of broad crowns at most as much again. A
+    /// round bound beyond.
     pub form_least: f64,
-    /// The same.
+    /// Largest value of the same ratio.
     pub form_most: f64,
-    /// Circles from which on the exponent of the pipe model is fitted.
+    /// Least circles to which the exponent of the pipe model is fitted.
     pub circles_fewest: f64,
-    /// The exponent of the pipe model: the fit of scans ends at 1.25.
+    /// Least exponent of the pipe model: the fit of scans ends at 1.25.
     pub exponent_least: f64,
-    /// The same: the fit of scans ends at 4.
+    /// Largest exponent of the pipe model: the fit of scans ends at 4.
     pub exponent_most: f64,
-    /// The share of the points of a plant of several organs that one organ may have: of three or more, and of two. Of seedlings whose
-    /// organs were told apart the largest has 39 to 47 %.
+    /// The share of the points of a plant of several organs that one organ may have: among three or more, and among
+    /// two. In seedlings with separated organs the largest has 39 to 47 %.
     pub organ_most: [f64; 2],
-    /// Places where the margin of a measured leaf may cross itself.
+    /// Crossings of the margin of a measured leaf with itself.
     pub crossings_most: f64,
     /// The share of growth laws that the days may leave undetermined.
     pub undetermined_most: f64,
-    /// What a size has at the end of its law over what it had at the beginning: less is a table in the wrong order.
+    /// The size at the end of its law over that at the beginning: less means a table in the wrong order.
     pub growth_least: f64,
 }
 
@@ -119,11 +124,12 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
     growth_least: 0.95,
 };
 
-/// A column of green wood as thick as `d` metres buckles at this times d^(2/3) metres: (7.837 E / 16 w)^(1/3) for a cylinder
-/// (Greenhill 1881), with a stiffness E of 10.3 `GPa` and the weight w of water, 9.81 kN in a cubic metre.
+/// Factor of the buckling height: a column of green wood of `d` metres in diameter buckles at this times d^(2/3)
+/// metres, (7.837 E / 16 w)^(1/3) for a cylinder (Greenhill 1881), with a stiffness E of 10.3 `GPa` and the weight w of
+/// water, 9.81 kN in a cubic metre.
 const BUCKLING: f64 = 80.1;
 
-/// The names of all checks, which are the codes of their warnings.
+/// Names of all checks, which are the codes of their warnings.
 pub const CHECKS: [&str; 32] = [
     "nothing-made",
     "size-large",
@@ -159,7 +165,7 @@ pub const CHECKS: [&str; 32] = [
     "structure-unused",
 ];
 
-/// How a value is shown to people.
+/// Form in which a value is shown to people.
 #[derive(Clone, Copy)]
 enum Figure {
     Share,
@@ -168,7 +174,7 @@ enum Figure {
 }
 
 impl Figure {
-    /// Three digits that count, with the unit.
+    /// Formats a value with three significant digits and its unit.
     fn show(self, value: f64) -> String {
         let (value, unit) = match self {
             Self::Share => (100.0 * value, " %"),
@@ -186,7 +192,7 @@ impl Figure {
     }
 }
 
-/// One check as it is written below; `message` holds `{value}`.
+/// One check as written below; `message` holds `{value}`.
 struct Test {
     name: &'static str,
     value: f64,
@@ -210,7 +216,7 @@ impl Test {
     }
 }
 
-/// Checks of any plant. Cost: linear in nodes and organs.
+/// Checks any plant. Cost: linear in nodes and organs.
 pub(crate) fn check_plant(plant: &Plant, report: &mut Report) {
     Test {
         name: "nothing-made",
@@ -325,17 +331,17 @@ fn check_wood(plant: &Plant, size: f64, report: &mut Report) {
     }
 }
 
-/// A drawing and what was made of it, before edits by hand.
+/// A drawing and the plant made of it, before hand edits.
 pub(crate) struct Sketched<'a> {
     pub(crate) ink: &'a Ink,
     pub(crate) reading: &'a Reading,
-    /// The front of the meshes over the drawing, by their diagonals; none if edits changed them.
+    /// Diagonal of the front of the meshes over that of the drawing; `None` if edits changed the plant.
     pub(crate) extent: Option<f64>,
-    /// Nobody said what the drawing shows.
+    /// Whether nobody said what the drawing shows.
     pub(crate) is_guessed: bool,
 }
 
-/// Checks of a plant as it was read from a file of structure. Cost: linear.
+/// Checks a plant as it was read from a file of structure. Cost: linear.
 pub fn check_read(plant: &Plant, tally: &StructureTally) -> Report {
     let mut report = Report::default();
     check_plant(plant, &mut report);
@@ -343,7 +349,7 @@ pub fn check_read(plant: &Plant, tally: &StructureTally) -> Report {
     report
 }
 
-/// Checks of a plant of a file of structure.
+/// Checks the plant of a file of structure.
 pub(crate) fn check_structure(tally: &StructureTally, report: &mut Report) {
     if tally.entries == 0 {
         return;
@@ -359,7 +365,7 @@ pub(crate) fn check_structure(tally: &StructureTally, report: &mut Report) {
     .tell(report);
 }
 
-/// Checks of a plant of a drawing.
+/// Checks the plant of a drawing.
 pub(crate) fn check_sketch(made: &Sketched<'_>, report: &mut Report) {
     let ignored =
         base::set_of(made.reading.strokes.iter().filter(|s| s.organ == OrganWord::Ignored).map(|s| s.index));
@@ -395,10 +401,12 @@ pub(crate) fn check_sketch(made: &Sketched<'_>, report: &mut Report) {
         }
         .tell(report);
     }
-    let score = ReadingReport::of(made.reading).first().map(|r| r.score);
-    // A line by itself is a stem by rule, and no kind was weighed against another.
-    // A tangle was told already.
-    let is_weighed = made.is_guessed && made.reading.strokes.len() > 1 && tangled == 0.0;
+    let score = ReadingReport::from_reading(made.reading).first().map(|r| r.score);
+    // A line by itself is a stem by rule, so that no kind was compared with another. A tangle has been reported
+    // already.
+    let is_lone_stem = made.reading.strokes.len() == 1
+        && made.reading.plants.iter().all(|p| matches!(p.kind, Kind::Stem | Kind::None));
+    let is_weighed = made.is_guessed && !is_lone_stem && tangled == 0.0;
     if let Some(score) = score.filter(|_| is_weighed) {
         Test {
             name: "reading-unsure",
@@ -412,7 +420,7 @@ pub(crate) fn check_sketch(made: &Sketched<'_>, report: &mut Report) {
     }
 }
 
-/// `value`: the size of what was made over that of its input.
+/// Checks `value`, the size of the result over that of its input.
 fn check_extent(value: f64, message: &'static str, report: &mut Report) {
     Test {
         name: "extent-small",
@@ -434,7 +442,7 @@ fn check_extent(value: f64, message: &'static str, report: &mut Report) {
     .tell(report);
 }
 
-/// Checks of a tree that was grown.
+/// Checks a grown tree.
 pub(crate) fn check_tree(spec: &TreeSpec, plant: &Plant, growth: &GrowthReport, report: &mut Report) {
     if growth.attractors > 0 {
         Test {
@@ -459,7 +467,7 @@ pub(crate) fn check_tree(spec: &TreeSpec, plant: &Plant, growth: &GrowthReport, 
     }
 }
 
-/// Checks of a leaf of marks, veins or a scan.
+/// Checks a leaf of marks, veins or a scan.
 pub(crate) fn check_leaf(leaf: &LeafReport, crossings: Option<usize>, report: &mut Report) {
     let length = leaf.length_mm * 1e-3;
     Test {
@@ -506,7 +514,7 @@ pub(crate) fn check_leaf(leaf: &LeafReport, crossings: Option<usize>, report: &m
     }
 }
 
-/// Checks of a tree of a scan; `is_placed`: somebody said which of several trees it is.
+/// Checks a tree of a scan; `is_placed`: somebody said which of several trees it is.
 pub(crate) fn check_scan(plant: &Plant, tally: &ScanTally, is_placed: bool, report: &mut Report) {
     let height = plant.extent().map_or(0.0, |(low, high)| high.y - low.y);
     Test {
@@ -547,7 +555,7 @@ pub(crate) fn check_scan(plant: &Plant, tally: &ScanTally, is_placed: bool, repo
     check_pipes(tally, report);
 }
 
-/// Whether the tree is all of what stands there, and nothing else.
+/// Checks that the cloud holds the whole tree, and nothing else.
 fn check_cloud(height: f64, tally: &ScanTally, is_placed: bool, report: &mut Report) {
     if !is_placed {
         Test {
@@ -594,7 +602,7 @@ fn check_cloud(height: f64, tally: &ScanTally, is_placed: bool, report: &mut Rep
     }
 }
 
-/// The volume of a tree against its height and its diameter.
+/// Checks the volume of a tree against its height and its diameter.
 fn check_volume(plant: &Plant, report: &mut Report) {
     let m = plant.measure();
     let Some(dbh) = m.dbh_m.filter(|d| *d > 0.0 && m.height_m > PLAUSIBLE.tall_m) else { return };
@@ -620,7 +628,7 @@ fn check_volume(plant: &Plant, report: &mut Report) {
     .tell(report);
 }
 
-/// Whether the radii of thin branches follow from what was seen.
+/// Checks that the radii of thin branches follow from the measured ones.
 fn check_pipes(tally: &ScanTally, report: &mut Report) {
     Test {
         name: "pipe-exponent-default",
@@ -648,7 +656,7 @@ fn check_pipes(tally: &ScanTally, report: &mut Report) {
     .tell(report);
 }
 
-/// Checks of a plant of labelled organs by the points of each.
+/// Checks a plant of labelled organs by the points of each.
 pub(crate) fn check_organs(points: &[usize], report: &mut Report) {
     let sum: usize = points.iter().sum();
     let most = points.iter().copied().max().unwrap_or(0);
@@ -666,14 +674,14 @@ pub(crate) fn check_organs(points: &[usize], report: &mut Report) {
     .tell(report);
 }
 
-/// Checks of growth laws, with their warnings.
+/// Checks growth laws, with their warnings.
 pub fn check_law(law: &GrowthLaw) -> Report {
     let mut report = Report::default();
     let all = law.laws.len();
     if all == 0 {
         return report;
     }
-    // A size that stays what it was tells of no growth, however well a law follows it.
+    // A constant size is no evidence of growth, however well a law follows it.
     let is_still = |values: &[f64]| values.windows(2).all(|w| w[0] == w[1]);
     let tells_nothing =
         |l: &&RegionLaw| !l.is_determined() || (l.axis == Quantity::Size && is_still(&l.values));

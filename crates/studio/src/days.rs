@@ -11,10 +11,11 @@ use mesh::PointCloud;
 use crate::made::MadePlant;
 use crate::seedling::{SeedlingError, SeedlingOptions, make_seedling};
 
-/// An organ of fewer points is left out: no motion of it can be found.
+/// Least points of an organ: no motion of a smaller one can be found.
 const FEWEST_POINTS: usize = 8;
 
-/// Scans of one plant on several days: cleaned, cut into organs that are found again, the plant's own motion taken off.
+/// Scans of one plant on several days: cleaned, cut into organs that are found again, with the plant's own motion
+/// removed.
 ///
 /// ```
 /// use burgeon::{Run, ScannedDays, Seed, glam::DVec3, mesh::PointCloud};
@@ -35,10 +36,11 @@ pub struct ScannedDays {
 }
 
 impl ScannedDays {
-    /// Of clouds, each with its day, metres, +Y up; days increase. `whole`: each is one organ, such as a leaf that was cut
-    /// off; otherwise stem and leaves are told apart where every scan shows both.
+    /// Makes them from clouds, each with its day, metres, +Y up; days increase. `whole`: each cloud is one organ, such
+    /// as a leaf that was cut off; otherwise stem and leaves are separated where every scan shows both.
     ///
-    /// Stray points and a ground plane are taken out first. Colours of the clouds go with their points. Cost: n log n, and a registration for each organ and step.
+    /// Stray points and a ground plane are removed first. Points keep the colours of the clouds. Cost: n log n, and a
+    /// registration for each organ and step.
     ///
     /// # Errors
     /// [`BloomError`]: too few points, or stopped.
@@ -71,7 +73,7 @@ impl ScannedDays {
             .collect::<Result<_, BloomError>>()?;
         let single = stages.iter().filter(|s| s.organs.len() == 1).count();
         if single > 0 && single < stages.len() {
-            // A scan that falls into stem and leaves cannot meet one that is a single organ.
+            // A scan that is split into stem and leaves cannot be matched with one that is a single organ.
             for (stage, (_, cloud)) in stages.iter_mut().zip(&kept) {
                 stage.organs = one(cloud)?;
             }
@@ -89,13 +91,13 @@ impl ScannedDays {
         Ok(Self { settled: bloom::settle(&stages, &RegisterSpec::default(), run)? })
     }
 
-    /// The first and the last day.
+    /// Returns the first and the last day.
     pub fn days(&self) -> [f64; 2] {
         let day = |stage: Option<&Stage>| stage.map_or(0.0, |s| s.day);
         [day(self.settled.stages.first()), day(self.settled.stages.last())]
     }
 
-    /// The law by which the organs grow, of 3 days or more.
+    /// Fits the law by which the organs grow, to 3 days or more.
     ///
     /// # Errors
     /// As [`bloom::fit_stages`].
@@ -103,7 +105,8 @@ impl ScannedDays {
         bloom::fit_stages(name, &self.settled.stages, &LawSpec::default(), run)
     }
 
-    /// The organs of a day, each with its points and their colours, in the frame of the plant; without a law everything goes at an even pace.
+    /// Returns the organs of a day, each with its points and their colours, in the frame of the plant; without a law
+    /// everything grows at an even pace.
     ///
     /// # Errors
     /// [`BloomError`].
@@ -121,7 +124,7 @@ impl ScannedDays {
         self.settled.day(law.unwrap_or(&even), &MotionSpec::default(), day, run)
     }
 
-    /// The plant of a day: a stem with leaves whose blades are those of the scans.
+    /// Makes the plant of a day: a stem with leaves whose blades are those of the scans.
     ///
     /// # Errors
     /// [`SeedlingError`].

@@ -1,6 +1,6 @@
-//! What a person would have drawn of a plant that stands before them: lines on a sheet.
+//! Line drawings of plants, as a person would draw them from life.
 //!
-//! `Plant, Model -> what is seen from the front -> stems and outlines, or limbs and the outline of the crown`
+//! `Plant, Model -> visible parts from the front -> stems and outlines, or limbs and the outline of the crown`
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -16,47 +16,47 @@ use skin::Layout;
 use crate::parts::NOTHING;
 use crate::survey::triangle_labels;
 
-/// Of a plant that shows more organs, nobody draws each.
+/// Most visible organs of a plant that are drawn one by one.
 const MOST_ORGANS: usize = 60;
-/// Beside the trunk.
+/// Most limbs that are drawn in addition to the trunk.
 const MOST_LIMBS: usize = 12;
-/// Of the radius of the foot of the trunk: thinner limbs are not drawn.
+/// Least radius of a limb that is drawn, as a share of the radius at the foot of the trunk.
 const THICK: f64 = 0.12;
-/// The order of the finest limbs that are drawn.
+/// Order of the finest limbs that are drawn.
 const FINEST_LIMB: u32 = 2;
-/// A limb is drawn of which more than this share is seen.
+/// Least visible share of a limb that is drawn.
 const BARE: f64 = 0.5;
-/// Foliage that covers more than this share of its outline hides what is in it.
+/// Foliage that covers more than this share of its outline hides the parts inside.
 const DENSE: f64 = 0.4;
-/// Of the height of the foliage: so far a trunk goes on into it.
+/// Height to which a trunk continues into the foliage, as a share of the foliage's height.
 const BEHIND: f64 = 0.1;
-/// Of the picture: what is smaller is a detail that nobody draws.
+/// Least area of an organ that is drawn, as a share of the picture: a smaller one is a detail.
 const LARGE: f64 = 0.0003;
-/// Of the plant's size: wood that is wider is drawn by its two edges.
+/// Width above which wood is drawn by its two edges, as a share of the plant's size.
 const WIDE: f64 = 0.025;
-/// An organ of which less is seen than this share of its outline's area is behind others.
+/// Least visible share of an organ's outline area: an organ that shows less is behind others.
 const SEEN: f64 = 0.2;
-/// Directions in which the reach of a crown is looked for.
+/// Number of directions in which the reach of a crown is measured.
 const SECTORS: usize = 48;
-/// Pixels across of the picture that says what is seen.
+/// Width in pixels of the picture that determines visibility.
 const PIXELS: u32 = 768;
-/// A rim that reaches over this share of an organ, each way, goes around it.
+/// A rim that spans this share of an organ, in both directions, goes around it.
 const AROUND: f64 = 0.9;
-/// Of the plant's size: lines are so true.
+/// Tolerance of lines, as a share of the plant's size.
 const FINE: f64 = 0.002;
-/// What is wider than this share of its length is no line.
+/// Largest width over length of an organ drawn as a line.
 const SLENDER: f64 = 0.25;
-/// Pieces of a slender organ whose middles make its line.
+/// Number of pieces of a slender organ whose middles make its line.
 const PIECES: usize = 6;
-/// Places that are nearer to one another, metres, are one: a seam is no rim.
+/// Distance in metres below which two places are one: a seam is not a rim.
 const SAME_M: f64 = 1e-9;
 
-/// What a line of a drawing is.
+/// Subject of a line of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawnKind {
     /// A stem, a trunk or a branch: along its middle, or around it.
     Axis,
-    /// An organ that is thin, along its middle.
+    /// A thin organ, along its middle.
     Stalk,
     /// The outline of an organ.
     Blade,
@@ -65,7 +65,7 @@ pub enum DrawnKind {
 }
 
 impl DrawnKind {
-    /// The word for it; in a file it is the layer.
+    /// Returns the word for it; in a file it is the layer.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Axis => "axis",
@@ -79,22 +79,23 @@ impl DrawnKind {
 /// A line of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnLine {
-    /// What it is.
+    /// Its subject.
     pub kind: DrawnKind,
-    /// Metres, x to the right, y upwards; the plant stands at the origin. An outline ends where it starts.
+    /// Points in metres, x to the right, y upwards; the plant stands at the origin. An outline ends where it starts.
     pub points: Vec<DVec2>,
-    /// The row of its axis or organ; [`NOTHING`] for a crown.
+    /// Row of its axis or organ; [`NOTHING`] for a crown.
     pub row: i32,
 }
 
-/// A plant from the front, as a line drawing, in the order in which a person draws: wood and stems, then organs from behind.
+/// Draws a plant from the front, as lines in the order in which a person draws: wood and stems, then organs from
+/// behind.
 ///
-/// Stems and branches are lines along their middle, thick wood is a line along both its edges. Organs that are seen are
-/// outlines; of a plant that shows many, trunk and limbs are drawn as far as foliage does not hide them, and around the
-/// foliage the outline of the crown. `layout`: of this model.
+/// Stems and branches are lines along their middle, thick wood is a line along both its edges. Visible organs are
+/// outlines; of a plant that shows many, trunk and limbs are drawn as far as foliage does not hide them, and the
+/// outline of the crown around the foliage. `layout`: of this model.
 ///
-/// Guaranteed: the same bits for any executor. Not guaranteed: that the program reads the same plant out of it. Cost: as a
-/// picture of 768 x 768 pixels.
+/// Guaranteed: the same bits for any executor. Not guaranteed: that the program reads the same plant from it. Cost:
+/// that of a picture of 768 x 768 pixels.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.
@@ -123,7 +124,7 @@ pub fn drawn(
             _ => {}
         }
     }
-    // What is on the ground is not the plant's outline.
+    // Roots are not part of the plant's outline.
     let above = |row: i32| usize::try_from(row).is_ok_and(|i| plant.axes[i].kind != AxisKind::Root);
     wood.retain(|axis, _| above(*axis));
     let all: u32 = organs.values().sum();
@@ -142,7 +143,7 @@ pub fn drawn(
     Ok(lines)
 }
 
-/// Lines as a drawing: each lies on the layer of its word.
+/// Makes a drawing of lines: each lies on the layer of its word.
 pub fn drawing_of<'a>(name: &str, lines: impl IntoIterator<Item = (&'a str, Vec<DVec2>)>) -> Drawing {
     let mut drawing = Drawing { name: name.to_owned(), ..Drawing::default() };
     for (word, line) in lines {
@@ -156,7 +157,7 @@ pub fn drawing_of<'a>(name: &str, lines: impl IntoIterator<Item = (&'a str, Vec<
     drawing
 }
 
-/// The largest extent of a model, metres.
+/// Returns the largest extent of a model, metres.
 fn size(model: &Model) -> f64 {
     let points = || model.parts.iter().flat_map(|part| &part.mesh.positions);
     let extent = |axis: usize| {
@@ -169,19 +170,20 @@ fn size(model: &Model) -> f64 {
     (0..3).map(extent).fold(SAME_M, f64::max)
 }
 
-/// What is drawn, and how large it is.
+/// The plant that is drawn, and its size.
 struct Sheet<'a> {
     plant: &'a Plant,
-    /// Metres.
+    /// Largest extent of the plant, metres.
     size: f64,
-    /// How true its lines are, metres.
+    /// Tolerance of its lines, metres.
     fine: f64,
-    /// Of the picture, metres: it holds the whole plant, and a little around it.
+    /// Side of a pixel of the picture, metres: the picture holds the whole plant, with a margin.
     pixel: f64,
 }
 
 impl Sheet<'_> {
-    /// Axes as lines from where they are borne to their tips, or to the height beside them; around those that are thick.
+    /// Draws axes as lines from their bearers to their tips, or to the height given with each; around those that are
+    /// thick.
     fn stems(&self, rows: &[(i32, f64)]) -> Vec<DrawnLine> {
         let line = |&(row, end): &(i32, f64)| {
             let axis = self.plant.axes.get(usize::try_from(row).ok()?)?;
@@ -210,7 +212,7 @@ impl Sheet<'_> {
                     .collect();
                 let left = points.iter().zip(&beside).map(|(p, b)| *p + *b);
                 let right = points.iter().zip(&beside).map(|(p, b)| *p - *b);
-                // What goes on behind foliage is open at its upper end, else at its foot.
+                // Wood that continues behind foliage is open at its upper end, other wood at its foot.
                 points = if cut < whole.len() {
                     left.rev().chain(right).collect()
                 } else {
@@ -222,8 +224,8 @@ impl Sheet<'_> {
         rows.iter().filter_map(line).collect()
     }
 
-    /// Trunks, and the longest of the thick limbs that foliage does not hide, with the heights where they end: a trunk a
-    /// little above the edge of the foliage that hides it. `seen`: pixels of each axis.
+    /// Returns trunks, and the longest of the thick limbs that foliage does not hide, with the heights at which they
+    /// end: a trunk a little above the edge of the foliage that hides it. `seen`: pixels of each axis.
     fn limbs(&self, seen: &BTreeMap<i32, u32>, foliage: Option<&[DVec2]>) -> Vec<(i32, f64)> {
         let (axes, nodes) = (&self.plant.axes, &self.plant.nodes);
         let foot = |axis: &plant::Axis| nodes.radius_m.get(axis.nodes.start as usize).copied().unwrap_or(0.0);
@@ -257,7 +259,7 @@ impl Sheet<'_> {
         }
         base::sort_by(&mut limbs, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         limbs.truncate(MOST_LIMBS);
-        // A limb without the one that bears it would hang in the air.
+        // A limb without its bearer would hang in the air.
         let mut drawn: BTreeSet<usize> = trunks.iter().filter_map(|t| usize::try_from(t.0).ok()).collect();
         base::sort_by_key(&mut limbs, |limb| limb.1);
         limbs.retain(|&(_, row)| {
@@ -270,7 +272,7 @@ impl Sheet<'_> {
         trunks.into_iter().chain(limbs.into_iter().map(|(_, row)| (row, f64::INFINITY))).collect()
     }
 
-    /// The organs that are seen, those behind first; `seen`: pixels of each.
+    /// Draws the visible organs, those behind first; `seen`: pixels of each.
     fn organs(&self, model: &Model, labels: &[Vec<[i32; 3]>], seen: &BTreeMap<i32, u32>) -> Vec<DrawnLine> {
         let mut found: BTreeMap<i32, (f64, DrawnLine)> = BTreeMap::new();
         for (part, labels) in model.parts.iter().zip(labels) {
@@ -288,7 +290,7 @@ impl Sheet<'_> {
                 let depth = points.values().map(|p| p.z).sum::<f64>() / points.len() as f64;
                 let flat: Vec<DVec2> = points.values().map(|p| p.truncate()).collect();
                 if is_thin(organ.kind) {
-                    // What is short and wide, such as the foot of a flower, is behind what it bears.
+                    // A short and wide organ, such as the foot of a flower, is behind the organs that it bears.
                     if let Some(points) = middle(&flat) {
                         found.insert(row, (depth, DrawnLine { kind: DrawnKind::Stalk, points, row }));
                     }
@@ -317,7 +319,7 @@ const fn is_thin(kind: OrganKind) -> bool {
     matches!(kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn | OrganKind::Pedicel)
 }
 
-/// The vertices of some triangles.
+/// Returns the vertices of some triangles.
 fn corners(part: &Part, faces: &[[u32; 3]]) -> BTreeMap<u32, DVec3> {
     let place = |&i: &u32| {
         let point = part.mesh.positions.get(i as usize)?;
@@ -332,7 +334,7 @@ fn extent(points: &[DVec2]) -> DVec2 {
     high - low
 }
 
-/// A line through the middle of what is long and thin; `None` of what is not.
+/// Returns a line through the middle of a long and thin set of points; `None` for any other.
 fn middle(points: &[DVec2]) -> Option<Vec<DVec2>> {
     let axes = geom::pca2(points)?;
     let [long, wide] = axes.lambda.map(f64::sqrt);
@@ -357,12 +359,13 @@ fn middle(points: &[DVec2]) -> Option<Vec<DVec2>> {
     Some([ends[0]].into_iter().chain(inner.iter().copied()).chain([ends[1]]).collect())
 }
 
-/// The longest loop of edges that one triangle has, closed; of a body that its rim does not go around, the hull.
+/// Returns the longest loop of edges with one triangle each, closed; the hull for a body that its rim does not go
+/// around.
 fn outline(points: &BTreeMap<u32, DVec3>, faces: &[[u32; 3]], flat: &[DVec2]) -> Option<Vec<DVec2>> {
     let rim = longest_loop(points, faces);
     if rim.len() > 3 {
         let (around, own) = (extent(&rim), extent(flat));
-        // The open end of a tube is no outline of it.
+        // The open end of a tube is not its outline.
         if around.cmpge(AROUND * own).all() {
             return Some(rim);
         }
@@ -372,7 +375,7 @@ fn outline(points: &BTreeMap<u32, DVec3>, faces: &[[u32; 3]], flat: &[DVec2]) ->
 }
 
 fn longest_loop(points: &BTreeMap<u32, DVec3>, faces: &[[u32; 3]]) -> Vec<DVec2> {
-    // Vertices that lie at one place are one.
+    // Vertices at the same place are one.
     let mut places: Vec<DVec2> = Vec::new();
     let mut at: BTreeMap<[i64; 2], usize> = BTreeMap::new();
     let mut same: BTreeMap<u32, usize> = BTreeMap::new();
@@ -412,7 +415,7 @@ fn longest_loop(points: &BTreeMap<u32, DVec3>, faces: &[[u32; 3]]) -> Vec<DVec2>
     best.iter().chain(best.first()).map(|k| places[*k]).collect()
 }
 
-/// A closed line around foliage: how far it reaches in each direction from its middle, evened out.
+/// Returns a closed line around foliage: its reach in each direction from its middle, smoothed.
 fn crown(plant: &Plant) -> Vec<DVec2> {
     let points: Vec<DVec2> = plant.organs.iter().map(|o| o.frame.origin.truncate()).collect();
     let middle = DVec2::new(median(points.iter().map(|p| p.x)), median(points.iter().map(|p| p.y)));
@@ -435,7 +438,7 @@ fn crown(plant: &Plant) -> Vec<DVec2> {
     (0..=SECTORS).map(|k| place(k % SECTORS)).collect()
 }
 
-/// Directions without foliage reach as far as those around them, evenly between.
+/// Interpolates directions without foliage from those around them.
 fn filled(reach: &[f64; SECTORS]) -> [f64; SECTORS] {
     let mut full = *reach;
     for (k, one) in full.iter_mut().enumerate().filter(|(_, one)| **one <= 0.0) {
@@ -552,7 +555,7 @@ mod tests {
 
     #[test]
     fn a_trunk_ends_behind_dense_foliage_and_goes_through_a_sparse_one() {
-        // The share of the crown's height up to which the trunk is drawn.
+        // Computes the share of the crown's height up to which the trunk is drawn.
         let seen = |larger: f64| {
             let mut spec = TreeSpec::default();
             spec.leaves.length_m *= larger;

@@ -24,7 +24,7 @@ use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeRep
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
 
-/// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
+/// Placement of a drawing in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
 /// the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontView {
@@ -34,10 +34,10 @@ pub struct FrontView {
     pub origin: DVec2,
 }
 
-/// Makes plants from a drawing that changes: an update does again only what a change touches.
+/// Makes plants from a drawing that changes: an update recomputes only the stages that a change affects.
 ///
-/// A seed or a setting of depth leaves the reading alone, a correction leaves the classifier alone, a colour leaves
-/// the plant alone. Guaranteed: the same result as from a fresh evaluator; after an error the last result stays.
+/// A seed or a setting of depth keeps the reading, a correction keeps the classes, a colour keeps the plant.
+/// Guaranteed: the same result as from a fresh evaluator; after an error the last result stays.
 ///
 /// ```
 /// use burgeon::{Evaluator, Run, Seed, SketchOptions};
@@ -53,21 +53,21 @@ pub struct FrontView {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Evaluator {
-    /// Measures of the strokes of the last drawing.
+    /// Measurements of the strokes of the last drawing.
     measures: KeptMeasures,
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
-    /// What single strokes of the last drawing gave.
+    /// Results of single strokes of the last drawing.
     understood: KeptStrokes,
     reading: Option<Kept<ReadFrom, Reading>>,
     /// Bodies of the contours of the last plant.
     bodies: KeptBodies,
-    /// With how true it is to the drawing; none where that is still to be measured.
+    /// The plant with its fidelity to the drawing; `None` inside where that is still to be measured.
     plant: Option<Kept<PlantFrom, (Built, Option<FidelityReport>)>>,
     shaper: Shaper,
-    /// The plant with its edits by hand; none where there are none.
+    /// The plant with its hand edits; `None` without any.
     shaped: Option<Shaped>,
     model: Option<Kept<ModelFrom, Model>>,
-    /// What lies where in the model.
+    /// Places of the plant's parts in the model.
     layout: Layout,
     /// Leaves and petals of the last model.
     shapes: KeptShapes,
@@ -76,7 +76,7 @@ pub struct Evaluator {
     done: Vec<&'static str>,
     /// See [`Evaluator::previewing`].
     preview: bool,
-    /// Of a preview: what the drawing was taken for before this stroke, if it was taken for something.
+    /// For a preview: the interpretation of the drawing before this stroke, if there was one.
     taken: Option<Taken>,
     /// See [`crate::SceneEvaluator::set_previewing`].
     pub(crate) previewing: bool,
@@ -84,36 +84,36 @@ pub struct Evaluator {
     pub(crate) later: bool,
 }
 
-/// A plant of more leaves than so many for each stroke has some that were not drawn.
+/// Leaves for each stroke above which a plant has some that were not drawn.
 const LEAVES_OF_A_STROKE: usize = 2;
 
-/// How true a plant of more strokes is to its drawing may be measured after the plant was seen.
+/// Number of strokes above which the fidelity of a plant may be measured after the plant was seen.
 const MANY: usize = 512;
 
-/// A preview has so many organs at most: a crown of more is shown with fewer and larger leaves until the pen is lifted.
+/// Most organs of a preview: a larger crown is shown with fewer and larger leaves until the pen is lifted.
 const SEEN_AT_ONCE: usize = 2_500;
 
-/// A coarser copy of a plant of very many organs, and how to skin it: for a preview.
+/// Returns a coarser copy of a plant of very many organs, and its skin settings: for a preview.
 fn coarse_preview(plant: &Plant, skin: &SkinSpec) -> Option<(Plant, SkinSpec)> {
     let level = plant.organs.len().div_ceil(SEEN_AT_ONCE).next_power_of_two().ilog2();
     (level > 0).then(|| coarser(plant, skin, level))
 }
 
-/// What a drawing of one plant was read as.
+/// Basis on which a drawing of one plant was read.
 #[derive(Clone, Copy, Debug)]
 enum Taken {
-    /// What its strokes say.
+    /// Its strokes.
     Strokes,
-    /// For a kind that explains the whole better.
+    /// A kind that explains the whole better.
     For(Kind),
-    /// For what the arrangement of its faces and lines says.
+    /// The arrangement of its faces and lines.
     Arranged,
 }
 
-/// What a plant is made from, besides its reading: the name goes into the plant.
+/// Inputs of a plant in addition to its reading: the name goes into the plant.
 type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
 
-/// What a reading is made from, besides ink and classes.
+/// Inputs of a reading in addition to ink and classes.
 type ReadFrom = (ClassOverrides, LiteMap<u32, StrokeClass>, Option<Kind>);
 
 /// An edited plant and the edits.
@@ -124,13 +124,13 @@ struct Shaped {
     told: Vec<EditReport>,
 }
 
-/// A photograph's file and its pixels, if it has any that decode.
+/// A photograph's file and its pixels, if they decode.
 type Decoded = (Arc<[u8]>, Option<Arc<Texture>>);
 
-/// What a model is made from, besides its plant. How strongly a photograph shows is no matter for it.
+/// Inputs of a model in addition to its plant. The opacity of a photograph does not affect it.
 type ModelFrom = (SkinSpec, Option<Photo>);
 
-/// A result, what it was made from (besides the stage before it), and what was said meanwhile.
+/// A result, its inputs (besides the stage before it), and the messages reported with it.
 #[derive(Clone, Debug)]
 struct Kept<K, V> {
     from: K,
@@ -138,7 +138,7 @@ struct Kept<K, V> {
     warnings: Vec<Warning>,
 }
 
-/// The strokes of a drawing keep what they were understood as while another is drawn.
+/// Returns the basis of a reading, so that strokes keep their interpretation while another is drawn.
 fn taken(reading: &Reading) -> Option<Taken> {
     let [plant] = &reading.plants[..] else { return None };
     let again = |s: &reading::StrokeReading| s.source == ink::Source::Rule(reading::READ_AS);
@@ -153,14 +153,14 @@ fn taken(reading: &Reading) -> Option<Taken> {
 }
 
 impl Evaluator {
-    /// An evaluator for a stroke that is still being drawn: faster, and no more than a preview. Strokes keep the class that
-    /// they had, and the report has neither fidelity nor digest. The guarantee above does not hold for it.
+    /// Makes an evaluator for a stroke that is still being drawn: faster, and no more than a preview. Strokes keep
+    /// their classes, and the report has neither fidelity nor digest. The guarantee above does not hold for it.
     pub fn previewing() -> Self {
         Self { preview: true, shapes: KeptShapes::loose(), ..Self::default() }
     }
 
-    /// Takes over what another evaluator found in this drawing, if that is what it made last: strokes have the class there
-    /// that a preview keeps. Whether it did.
+    /// Takes over the results of another evaluator for this drawing, if it made that last: the preview keeps the
+    /// classes of the strokes there. Returns whether it did.
     pub fn follow(&mut self, other: &Self, drawing: &Drawing) -> bool {
         let same = other.strokes.as_ref().is_some_and(|k| k.from.strokes == drawing.strokes);
         if same {
@@ -218,7 +218,7 @@ impl Evaluator {
         Ok(self.item(&drawing.name, stages, run))
     }
 
-    /// For a preview: classes of strokes that are as they were.
+    /// Returns, for a preview, the classes of unchanged strokes.
     fn known(&self, drawing: &Drawing, ink: &Ink) -> Vec<Option<Classified>> {
         let Some(Kept { from, value: (old, classes), .. }) = self.strokes.as_ref().filter(|_| self.preview)
         else {
@@ -278,7 +278,7 @@ impl Evaluator {
             });
         run.cancel.check()?;
         if self.preview {
-            // A vein under the pen would have the surface of leaves painted anew at each of its points.
+            // For a vein under the pen, the surface of leaves would be painted again at each of its points.
             let last = strokes.from.strokes.len().saturating_sub(1);
             let lies = |v: &VeinReading| v.source.is_none_or(|source| source as usize != last);
             reading.leaves.iter_mut().for_each(|leaf| leaf.veins.retain(lies));
@@ -305,8 +305,8 @@ impl Evaluator {
         }
         let mut report = Report::default();
         let kept = &mut self.bodies;
-        let mut built = sketch::build_again(&reading.value, spec, seed, kept, run, &mut report)?; // books `depth` itself
-        // Another leaf is not what was drawn: then it has to be measured before that.
+        let mut built = sketch::build_again(&reading.value, spec, seed, kept, run, &mut report)?; // books `depth`
+        // The user's leaf replaces the drawn ones, so the fidelity has to be measured before it is applied.
         let later = self.later && leaf.is_none() && strokes.value.0.strokes.len() > MANY;
         let wanted = !self.preview && !later;
         let start = run.clock.now_ms();
@@ -316,7 +316,7 @@ impl Evaluator {
             None
         };
         stages.push(Stage { name: "fidelity", ms: run.clock.now_ms() - start });
-        // After the measure against the drawing: the user's leaf is not what was drawn.
+        // Applied after the fidelity is measured: the user's leaf is not the drawn one.
         if let Some(leaf) = leaf {
             let count = leaf.apply(&mut built.plant);
             if count == 0 {
@@ -331,11 +331,11 @@ impl Evaluator {
         Ok(())
     }
 
-    /// Measures how true the plant is to its drawing, where an update put that off; `None` where there is nothing left to
+    /// Measures the fidelity of the plant to its drawing, where an update put that off; `None` where nothing is left to
     /// measure.
     ///
     /// # Errors
-    /// [`Cancelled`]; it is still to be measured then.
+    /// [`Cancelled`]; the fidelity is still to be measured then.
     pub(crate) fn measure(&mut self, run: &Run<'_>) -> Result<Option<FidelityReport>, Cancelled> {
         let (Some(strokes), Some(reading), Some(made)) = (&self.strokes, &self.reading, &mut self.plant)
         else {
@@ -350,12 +350,12 @@ impl Evaluator {
         Ok(Some(found))
     }
 
-    /// An update put off to measure how true the plant is to its drawing.
+    /// Whether an update put off measuring the fidelity.
     pub(crate) fn is_unmeasured(&self) -> bool {
         !self.preview && self.plant.as_ref().is_some_and(|p| p.value.1.is_none())
     }
 
-    /// Edits by hand, after the measure against the drawing: what a hand changed is not what was drawn.
+    /// Applies hand edits, after the fidelity is measured: an edited part is not what was drawn.
     fn shape(
         &mut self,
         options: &SketchOptions,
@@ -382,8 +382,8 @@ impl Evaluator {
         Ok(())
     }
 
-    /// How a drawing is skinned. The leaves of one that is filled sparsely are no finer than those of one that is filled as by
-    /// rule: fewer leaves would have more triangles.
+    /// Returns the skin settings of a drawing. The leaves of a sparsely filled one are no finer than those of one with
+    /// the default density: otherwise fewer leaves would have more triangles.
     fn sparse(&self, options: &SketchOptions) -> SkinSpec {
         let density = options.spec.fill.density;
         let strokes = self.strokes.as_ref().map_or(0, |k| k.from.strokes.len());
@@ -433,7 +433,7 @@ impl Evaluator {
         Ok(())
     }
 
-    /// Keeps the pixels of a photograph; whether it decodes.
+    /// Decodes a photograph and keeps its pixels; returns whether it decodes.
     fn decode(&mut self, photo: &Photo, report: &mut Report) -> bool {
         let known = self.picture.as_ref().is_some_and(|(png, _)| Arc::ptr_eq(png, photo.png()));
         if !known {
@@ -450,7 +450,7 @@ impl Evaluator {
         decoded
     }
 
-    /// The photograph in the plant's plane; `None` if it was not decoded.
+    /// Returns the photograph in the plant's plane; `None` if it was not decoded.
     fn traced(&self, photo: &Photo) -> Option<Traced> {
         let texture = self.picture.as_ref().and_then(|(_, t)| t.clone())?;
         let front = self.front()?;
@@ -464,8 +464,8 @@ impl Evaluator {
         Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
     }
 
-    /// A coarser copy of the model, with the same materials, the plant that it is of, and what of that lies where in it; none
-    /// before an update. As [`crate::MadePlant::at_level`] has it.
+    /// Returns a coarser copy of the model, with the same materials, its plant, and the places of that plant's parts in
+    /// it; `None` before an update. See [`crate::MadePlant::at_level`].
     ///
     /// # Errors
     /// [`Stopped`].
@@ -473,7 +473,7 @@ impl Evaluator {
         Ok(self.laid_out_to(level.max(1), run)?.pop())
     }
 
-    /// Coarser copies of the levels 1 to `count`; none before an update.
+    /// Returns coarser copies of the levels 1 to `count`; `None` before an update.
     fn laid_out_to(&self, count: u32, run: &Run<'_>) -> Result<Vec<LaidOut>, Stopped> {
         let (Some(plant), Some(model), Some(made)) = (self.plant(), &self.model, &self.plant) else {
             return Ok(Vec::new());
@@ -525,7 +525,7 @@ impl Evaluator {
             counts,
             timings_ms: TimingsMs::from_report(&report),
             fidelity: plant.value.1.unwrap_or_default(),
-            readings: ReadingReport::of(&reading.value),
+            readings: ReadingReport::from_reading(&reading.value),
             digest,
             edits: told.to_vec(),
             ..ItemReport::default()
@@ -535,7 +535,8 @@ impl Evaluator {
         item
     }
 
-    /// The front of the meshes over the drawing, by their diagonals; none of a plant that was edited by hand.
+    /// Returns the diagonal of the front of the meshes over that of the drawing; `None` for a plant that was edited by
+    /// hand.
     fn extent(&self) -> Option<f64> {
         let (plant, model) = (&self.plant.as_ref()?.value.0, &self.model.as_ref()?.value);
         if self.shaped.is_some() || plant.map.metres_per_ink <= 0.0 {
@@ -547,37 +548,37 @@ impl Evaluator {
         Some(size.truncate().length() / plant.map.metres_per_ink).filter(|e| e.is_finite())
     }
 
-    /// Nobody said what the drawing shows.
+    /// Whether nobody said what the drawing shows.
     fn is_guessed(&self) -> bool {
         self.reading.as_ref().is_some_and(|r| r.from.2.is_none())
     }
 
-    /// The stages that the last update did again, by their names in reports.
+    /// Returns the stages that the last update recomputed, by their names in reports.
     pub fn stages_done(&self) -> &[&'static str] {
         &self.done
     }
 
-    /// The model of the last update that succeeded so far.
+    /// Returns the model of the last successful update.
     pub fn model(&self) -> Option<&Model> {
         Some(&self.model.as_ref()?.value)
     }
 
-    /// What lies where in the model of the last update; none before one.
+    /// Returns the places of the plant's parts in the model of the last update; `None` before one.
     pub(crate) fn layout(&self) -> Option<&Layout> {
         self.model.as_ref().map(|_| &self.layout)
     }
 
-    /// The plant of the last update that succeeded so far, with its edits by hand.
+    /// Returns the plant of the last successful update, with its hand edits.
     pub fn plant(&self) -> Option<&Plant> {
         self.shaped.as_ref().map(|s| &s.plant).or_else(|| self.drawn())
     }
 
-    /// The plant as it was drawn, before any edit by hand.
+    /// Returns the plant as it was drawn, before any hand edit.
     pub(crate) fn drawn(&self) -> Option<&Plant> {
         Some(&self.plant.as_ref()?.value.0.plant)
     }
 
-    /// How the drawing lies in the model's front view.
+    /// Returns the placement of the drawing in the model's front view.
     pub fn front(&self) -> Option<FrontView> {
         let ink = self.strokes.as_ref()?.value.0.map;
         let map = self.plant.as_ref()?.value.0.map;
@@ -587,7 +588,7 @@ impl Evaluator {
         })
     }
 
-    /// The reading, plant and model of the last update; the evaluator is empty then.
+    /// Takes the reading, plant and model of the last update; the evaluator is then empty.
     pub(crate) fn take(&mut self) -> Option<(Reading, Plant, Model)> {
         let (reading, plant, model) = (self.reading.take()?, self.plant.take()?, self.model.take()?);
         self.strokes = None;
@@ -623,7 +624,7 @@ pub fn make_from_sketch(
     Ok(made)
 }
 
-/// [`make_from_sketch`], with coarser copies of the plant and the like.
+/// Calls [`make_from_sketch`], and also makes coarser copies of the plant and other levels.
 ///
 /// # Errors
 /// As [`make_from_sketch`].
@@ -668,7 +669,7 @@ mod tests {
         Drawing::from_polylines("herb", &[stem, leaf])
     }
 
-    /// What an update did again, after checking that a fresh evaluator gives the same.
+    /// Returns the stages that an update recomputed, after checking that a fresh evaluator gives the same.
     fn step(e: &mut Evaluator, d: &Drawing, o: &SketchOptions, seed: u64) -> Vec<&'static str> {
         let item = e.update(d, o, Seed::new(seed), &Run::plain()).unwrap();
         let mut fresh = Evaluator::default();
@@ -688,7 +689,7 @@ mod tests {
         assert_eq!(step(&mut e, &d, &o, 2), all[3..]);
         o.spec.fill.density = 2.0;
         assert_eq!(step(&mut e, &d, &o, 2), all[3..]);
-        // An edit by hand draws nothing anew.
+        // A hand edit draws nothing anew.
         let turn = shape::Turn { about: glam::DVec3::Z, degrees: 25.0 };
         o.edits.push(shape::HandEdit::Rotate { axis: shape::AxisKey::Path(vec![0]), turn }.into());
         assert_eq!(step(&mut e, &d, &o, 2), ["shape", "mesh"]);
@@ -721,7 +722,7 @@ mod tests {
         let whole = full.update(&d, &o, Seed::new(1), &run).unwrap();
         assert_eq!(item.counts.leaves, whole.counts.leaves);
         assert_eq!(preview.front(), full.front());
-        // Another first stroke is unknown again.
+        // A changed first stroke is unknown again.
         d.strokes[0].samples.truncate(20);
         assert!(preview.update(&d, &o, Seed::new(1), &run).is_ok());
     }

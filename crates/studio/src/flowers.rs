@@ -9,16 +9,16 @@ use crate::made::MadePlant;
 use crate::report::ItemReport;
 use crate::shaping::shaped;
 
-/// What is asked of a flower beside its species and day.
+/// Options of a flower in addition to its species and day.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlowerOptions {
-    /// How it is meshed: `detail`, `wind`, `worn`. Its other colours are those of the species.
+    /// Skin settings: `detail`, `wind`, `worn`. Its other colours are those of the species.
     pub skin: SkinSpec,
-    /// Edits by hand, done on the plant in this order.
+    /// Hand edits, applied to the plant in this order.
     pub edits: Vec<PlantEdit>,
 }
 
-/// Makes a whole flower as it is at `day` (Huai, Yang and Cai 2019).
+/// Makes a whole flower at `day` (Huai, Yang and Cai 2019).
 ///
 /// Guaranteed: the same vertices and triangles at every day, for edits that do not cut.
 ///
@@ -32,11 +32,12 @@ pub fn make_flower(
     seed: Seed,
     run: &Run<'_>,
 ) -> Result<MadePlant, Stopped> {
-    let made = untold_flower(name, spec, (day, law), options, seed, run)?.told();
+    let made = untold_flower(name, spec, (day, law), options, seed, run)?.with_digest();
     Ok(MadePlant { item: ItemReport { plant: Some(made.plant.measure()), ..made.item }, ..made })
 }
 
-/// [`make_flower`] without what takes as long as the meshes and is not seen: digest and measures of the plant.
+/// Makes a flower as [`make_flower`] does, but without the digest and the measures of the plant, which take as long as
+/// the meshes and are not seen.
 pub(crate) fn untold_flower(
     name: &str,
     spec: &FlowerSpec,
@@ -47,7 +48,7 @@ pub(crate) fn untold_flower(
 ) -> Result<MadePlant, Stopped> {
     spec.check(&run.budget)?;
     let mut report = Report::default();
-    let mut plant = report.stage("structure", run.clock, |_| spec.at(day, law, seed));
+    let mut plant = report.stage("structure", run.clock, |_| spec.make_on_day(day, law, seed));
     name.clone_into(&mut plant.name);
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     run.cancel.check()?;
@@ -68,7 +69,7 @@ mod tests {
 
     use super::*;
 
-    /// What is left for later is what would have been told at once, and copies go on sharing it.
+    /// A report that is completed later equals one that is complete at once, and copies continue to share it.
     #[test]
     fn a_flower_is_seen_before_its_digest_is_told() {
         let mut editor = Editor::default();
@@ -82,8 +83,8 @@ mod tests {
         scene.set_measuring_later(true);
         let run = Run::plain();
         for day in [1.0, 2.5] {
-            editor.run(FlowerCommand::SetDay(day).of(first)).expect("sound");
-            editor.run(FlowerCommand::SetDay(day).of(copy)).expect("sound");
+            editor.run(FlowerCommand::SetDay(day).for_plant(first)).expect("sound");
+            editor.run(FlowerCommand::SetDay(day).for_plant(copy)).expect("sound");
             for id in [first, copy] {
                 scene.update(id, editor.document(), &run).expect("sound");
                 whole.update(id, editor.document(), &run).expect("sound");

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use leaf::{FullMarks, Leaf};
 
-/// A flat leaf as the blade of another maker's plant: outline, midrib and veins, of length `length_m`.
+/// Returns a flat leaf as the blade of another maker's plant: outline, midrib and veins, of length `length_m`.
 ///
-/// The measured relief becomes that of He and Cheng (2021): the bend along the midrib (Eq 5) and the fold of the halves,
-/// fitted to the marks by least squares.
+/// The measured relief becomes that of He and Cheng (2021): the bend along the midrib (Eq 5) and the fold of the
+/// halves, fitted to the marks by least squares.
 pub fn leaf_blade(leaf: &Leaf, marks: &FullMarks, length_m: f64) -> plant::Blade {
     let flat = leaf.blade().flat(3);
     let midrib = flat.midrib();
@@ -31,7 +31,7 @@ pub fn leaf_blade(leaf: &Leaf, marks: &FullMarks, length_m: f64) -> plant::Blade
     }
 }
 
-/// A and B of `y = A xi^4 + B xi^2` along minus the normal, for the midrib seen from its root's tangent.
+/// Fits A and B of `y = A xi^4 + B xi^2` along minus the normal, for the midrib seen from its root's tangent.
 fn bend_of(marks: &FullMarks) -> (f64, f64) {
     let line = marks.midrib();
     let Some(start) = line.get(1).and_then(|p| (*p - line[0]).try_normalize()) else { return (0.0, 0.0) };
@@ -57,14 +57,14 @@ fn bend_of(marks: &FullMarks) -> (f64, f64) {
     (a.clamp(-0.5, 0.5), b.clamp(-0.5, 0.8))
 }
 
-/// The upper side's direction at a row (from 0 at the tip): across times along.
+/// Returns the direction of the upper side at a row (from 0 at the tip): across times along.
 fn upper(marks: &FullMarks, row: usize) -> DVec3 {
     let r = &marks.rows[row];
     let next = if row == 0 { marks.tip } else { marks.rows[row - 1].points[3] };
     (r.points[0] - r.points[6]).cross(next - r.points[3])
 }
 
-/// Mean slope of the halves towards the upper side.
+/// Returns the mean slope of the halves towards the upper side.
 fn fold_of(marks: &FullMarks) -> f64 {
     let (mut rise, mut wide) = (0.0, 0.0);
     for (k, row) in marks.rows.iter().enumerate() {

@@ -16,22 +16,22 @@ use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 use crate::shaping::shaped;
 
-/// What is asked of a leaf beside its spec.
+/// Options of a leaf in addition to its marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LeafOptions {
     /// Surface, veins, resolution, curl, wilt, colour.
     pub spec: LeafSpec,
-    /// How the plant is meshed: `detail`, `wind`, `worn`. What the spec says of the blade is taken from there.
+    /// Skin settings: `detail`, `wind`, `worn`. Settings of the blade come from the spec.
     pub skin: SkinSpec,
-    /// A picture of the pressed leaf in the place of the spec's colour, cropped to its box, tip at the top.
+    /// A picture of the pressed leaf that replaces the spec's colour, cropped to its box, tip at the top.
     pub picture: Option<Arc<Texture>>,
     /// Side veins on either side of a chief vein in each lobe of a palmate leaf, 0 to 12; made by rule.
     pub side_veins: u32,
-    /// Edits by hand, done on the plant in this order.
+    /// Hand edits, applied to the plant in this order.
     pub edits: Vec<PlantEdit>,
 }
 
-/// Why no leaf came out.
+/// Reason why no leaf was made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LeafError {
@@ -44,22 +44,22 @@ pub enum LeafError {
     /// The chief veins make no leaf.
     #[error(transparent)]
     Rays(#[from] RaysError),
-    /// No leaf in a scan.
+    /// The scan has no leaf.
     #[error(transparent)]
     Scan(#[from] ScanError),
-    /// A scan of more than one leaf.
+    /// The scan has more than one leaf.
     #[error(
         "the cloud shows {0} blades that part on necks of their own: it is a plant or a leaf of leaflets, not one blade. Cut \
          one out of it, or make all of it as a plant of scans (docs/bloom.md)"
     )]
     Several(usize),
-    /// Nothing to put on a plant.
+    /// There is no leaf to put on a plant.
     #[error("a plant needs at least one leaf")]
     NoLeaves,
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// It would have been too much.
+    /// The result would exceed the budget.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
 }
@@ -73,10 +73,10 @@ impl From<Stopped> for LeafError {
     }
 }
 
-/// The green of the stem, linear.
+/// Green of the stem, linear.
 const STEM: [f32; 3] = [0.18, 0.30, 0.07];
 
-/// What to do where a leaf would have too many triangles.
+/// Advice for a leaf with too many triangles.
 pub(crate) const COARSER: &str = "lower subdivisions or sides, or make fewer leaves";
 
 /// Makes a leaf and its meshes from marks (Wang et al. 2011).
@@ -95,9 +95,9 @@ pub fn make_leaf(
     make_leaf_of(name, &full, options, seed, run, report)
 }
 
-/// As [`make_leaf`], from marks that are complete, adding to what was reported before.
+/// Makes a leaf as [`make_leaf`] does, from complete marks, and adds to an existing report.
 ///
-/// The marks as they were meshed are those of [`LeafSpec::shaped`].
+/// [`LeafSpec::shaped`] returns the marks as they are meshed.
 ///
 /// # Errors
 /// [`LeafError`].
@@ -143,8 +143,8 @@ pub(crate) fn add_leaf(
     plant.organs.push(Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source });
 }
 
-/// Edits by hand, meshes, and the report of a plant of measured leaves, and the mesh of its first leaf; `textures` are
-/// those of its forms.
+/// Applies hand edits to a plant of measured leaves and makes its meshes, its report, and the mesh of its first leaf;
+/// `textures` are those of its forms.
 pub(crate) fn finish(
     mut plant: Plant,
     textures: &[Option<Arc<Texture>>],
@@ -181,10 +181,10 @@ pub(crate) fn finish(
             "{count} rings lie inside their neighbours' balls and were drawn to a point"
         );
     }
-    Ok((MadePlant::untold(plant, (model, spec), (edits, &options.edits), report).told(), mesh))
+    Ok((MadePlant::untold(plant, (model, spec), (edits, &options.edits), report).with_digest(), mesh))
 }
 
-/// The mean colour of the axes that have some.
+/// Returns the mean colour of the axes that have one.
 fn mean_of_axes(plant: &Plant) -> Option<[f32; 3]> {
     let colors: Vec<[f32; 3]> = plant.axes.iter().flat_map(|a| a.colors.iter().copied()).collect();
     #[expect(clippy::cast_precision_loss, reason = "twelve an axis")]
@@ -209,7 +209,7 @@ pub(crate) fn leaf_texture(
 }
 
 impl LeafOptions {
-    /// How finely blade and veins are meshed.
+    /// Returns the fineness of the meshes of blade and veins.
     pub(crate) fn mesh(&self) -> LeafMeshSpec {
         let LeafSpec { rings, subdivisions, sides, caps, margin_vein, .. } = self.spec;
         LeafMeshSpec {
@@ -221,7 +221,8 @@ impl LeafOptions {
         }
     }
 
-    /// What a leaf is painted in that is lighter or darker by `tint`: a texture has its colours, else it is of one.
+    /// Returns the paint of a leaf that is lighter or darker by `tint`: a texture keeps its colours, else it has one
+    /// colour.
     pub(crate) fn paint(&self, tint: [f32; 3]) -> Paint {
         if self.picture.is_some() || self.spec.texture == LeafPaint::Veins {
             return Paint::Natural(tint);
@@ -254,7 +255,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &Lea
         area_mm2: 1e6 * meshes.surface.area(),
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.surface, meshes.blade_faces),
-        fit_error: LeafFit::of(&distances),
+        fit_error: LeafFit::from_distances(&distances),
         vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
         swallowed_rings: swallowed(options, meshes),
         crossing_rings: Some(meshes.crossing as u64),
@@ -262,7 +263,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &Lea
     }
 }
 
-/// Rings that the exact surface of the veins swallows; plain rings are not asked.
+/// Counts the rings that the exact surface of the veins swallows; `None` for plain rings.
 pub(crate) fn swallowed(options: &LeafOptions, meshes: &ShapeMesh) -> Option<u64> {
     (options.spec.rings == geom::RingRule::Envelope).then_some(meshes.swallowed as u64)
 }

@@ -1,43 +1,48 @@
-//! Levels of detail of any plant, and what else is exported with it.
+//! Levels of detail of any plant, and the other parts of its export.
 //!
 //! `plant, its finest meshes -> coarser plants -> meshes of at most half the triangles each -> copies, impostor`
 
 use std::sync::Arc;
 
 use base::{Cancelled, Run, Stopped};
+use formats::Assembly;
 use mesh::{Copies, Model, Texture};
 use plant::{AxisKind, OrganKind, Plant};
 use skin::{Layout, SkinSpec};
 
+use crate::assembly::{AssemblyError, assemble};
 use crate::lod::coarser;
 
-/// A model, and the plant that it is of with what of it lies where in the model.
+/// A model, its plant, and the places of that plant's parts in the model.
 pub(crate) type LaidOut = (Model, (Plant, Layout));
 
-/// What is exported of a plant besides its finest meshes, of whatever maker.
+/// Exports of a plant in addition to its finest meshes, for any maker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LevelSpec {
     /// Coarser copies, at most 6. Default 0.
     pub lods: u32,
-    /// Also take leaves that are one form out of each level ([`skin::copies`]). Default false.
+    /// Also extract leaves of one form from each level ([`skin::copies`]). Default false.
     pub copies: bool,
-    /// One more level, the last: views from all sides in an atlas of so many pixels a side, 128 to 4096 ([`render::impostor`]).
-    /// Default none.
+    /// Side in pixels of an atlas of views from all sides, 128 to 4096, that is added as the last level
+    /// ([`render::impostor`]). Default none.
     pub impostor: Option<u32>,
+    /// Also make an assembly of the finest level ([`assemble`]). Default false.
+    pub assembly: bool,
 }
 
-/// The coarser copies of a plant, the finest first.
+/// Coarser copies of a plant, the finest first.
 #[derive(Clone, Debug, Default)]
 pub struct Levels {
     /// Their meshes; the impostor is the last.
     pub lods: Vec<Model>,
-    /// Of the plant and of each of `lods`, what is left without leaves that are one form, and these. Empty unless they are
-    /// asked for.
+    /// For the plant and each of `lods`, the model without leaves of one form, and these. Empty unless requested.
     pub copies: Vec<(Model, Vec<Copies>)>,
+    /// The plant with a skeleton, if requested.
+    pub assembly: Option<Result<Assembly, AssemblyError>>,
 }
 
 impl Levels {
-    /// Makes them: `finest` is the plant as it is, `at` gives one of its levels, 1 to 6.
+    /// Makes the levels: `finest` is the plant itself, `at` returns one of its levels, 1 to 6.
     pub(crate) fn new<E: From<Cancelled>>(
         spec: &LevelSpec,
         (model, plant, layout): (&Model, &Plant, &Layout),
@@ -45,6 +50,9 @@ impl Levels {
         run: &Run<'_>,
     ) -> Result<Self, E> {
         let mut levels = Self::default();
+        if spec.assembly {
+            levels.assembly = Some(assemble((plant, model, layout), run));
+        }
         if spec.copies {
             levels.copies.push(skin::copies(plant, model, layout));
         }
@@ -67,19 +75,20 @@ impl Levels {
     }
 }
 
-/// A plant of fewer axes and leaves than these keeps all of them at every level: each of them is seen.
+/// Least axes of a plant that loses axes at coarser levels: of fewer, each is seen.
 const FEW_AXES: usize = 100;
+/// Least leaves of a plant that loses leaves at coarser levels: of fewer, each is seen.
 const FEW_LEAVES: usize = 300;
-/// A level is meshed again, coarser, so many times at most until it has at most half of the triangles of the one before.
+/// Most attempts to mesh a level more coarsely until it has at most half of the triangles of the one before.
 const TRIES: u32 = 5;
-/// A further try aims at this share of the triangles that a level may have, because meshes have no exact number of them.
+/// Share of the triangles allowed that a further attempt aims at, because their number cannot be set exactly.
 const AIM: f64 = 0.9;
 
-/// A plant at level `level` (1 to 6) with the materials of `fine`, its finest meshes, which `skin` describes.
+/// Makes a plant at level `level` (1 to 6) with the materials of `fine`, its finest meshes, which `skin` describes.
 ///
-/// Guaranteed: each level has at most half of the triangles of the one before, unless every part of it is as coarse as a part
-/// can be. Many leaves and axes become fewer ([`coarser`]); of few, and of flowers, each part becomes coarser. Cost: that of
-/// meshing the finer levels, too.
+/// Guaranteed: each level has at most half of the triangles of the one before, unless every part of it is as coarse as
+/// possible. Many leaves and axes become fewer ([`coarser`]); of few, and of flowers, each part becomes coarser. Cost:
+/// that of meshing the finer levels, too.
 pub(crate) fn level_of(
     plant: &Plant,
     (skin, fine): (&SkinSpec, &Model),
@@ -94,7 +103,7 @@ pub(crate) fn level_of(
     Ok(made)
 }
 
-/// Levels 1 to `count` (at most 6) as [`level_of`] makes each. Cost: that of meshing each once.
+/// Makes levels 1 to `count` (at most 6) as [`level_of`] makes each. Cost: that of meshing each once.
 pub(crate) fn levels_of(
     plant: &Plant,
     (skin, fine): (&SkinSpec, &Model),
@@ -105,11 +114,11 @@ pub(crate) fn levels_of(
     (1..=count.min(6)).map(|level| next_level((plant, skin, fine), level, &mut last, &mesh)).collect()
 }
 
-/// What a level leaves to the next.
+/// State that a level passes to the next.
 struct Coarse {
-    /// Triangles that the next one may have.
+    /// Most triangles of the next level.
     most: usize,
-    /// How much coarser than by rule its parts are: a factor of their fineness.
+    /// Factor by which its parts are finer or coarser than the default.
     detail: f64,
 }
 
@@ -147,7 +156,7 @@ fn next_level(
         ((model, layout), last.detail) = (smaller, detail);
     }
     last.most = model.triangle_count() / 2;
-    // Cards of leaves have textures of their own.
+    // Cards of leaves have separate textures.
     if style.foliage == skin.foliage {
         for material in &mut model.materials {
             if let Some(same) = fine.materials.iter().find(|m| m.name == material.name) {
@@ -165,30 +174,30 @@ fn is_crowd(plant: &Plant) -> bool {
     leaves >= FEW_LEAVES || axes >= FEW_AXES
 }
 
-/// How large what is written of a plant may be.
+/// Largest size of the written form of a plant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Allowance {
-    /// Triangles of the model. Default any.
+    /// Most triangles of the model. Default any.
     pub triangles: Option<u64>,
-    /// Bytes of its files. Default any.
+    /// Most bytes of its files. Default any.
     pub bytes: Option<u64>,
 }
 
-/// A plant that is as large as it may be.
+/// A plant that fits its allowance.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// What is the model now.
+    /// The model, perhaps a coarser level.
     pub model: Model,
     /// Its coarser copies.
     pub levels: Levels,
-    /// The level of detail that the model is, 0 for the finest.
+    /// Level of detail of the model, 0 for the finest.
     pub level: usize,
-    /// How often the sides of its textures were halved.
+    /// Number of halvings of the sides of its textures.
     pub halvings: u32,
 }
 
 impl Fitted {
-    /// What became of the plant, in words; none if it is as it was.
+    /// Describes in words how the plant was reduced; `None` if it is unchanged.
     pub fn line(&self) -> Option<String> {
         let level = (self.level > 0).then(|| format!("the model is level of detail {}", self.level));
         let textures = (self.halvings > 0).then(|| {
@@ -199,7 +208,7 @@ impl Fitted {
     }
 }
 
-/// Why a plant cannot be as small as it is to be.
+/// Reason why a plant cannot be as small as requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AllowanceError {
     /// Even its coarsest level has more triangles.
@@ -207,7 +216,7 @@ pub enum AllowanceError {
         "the plant has at least {least} triangles, at its coarsest level; allow as many, or make it coarser"
     )]
     Triangles {
-        /// Those of the coarsest level.
+        /// Triangles of the coarsest level.
         least: u64,
     },
     /// Even its coarsest level is larger.
@@ -217,20 +226,20 @@ pub enum AllowanceError {
         *least as f64 / 1e6
     )]
     Bytes {
-        /// Those of the coarsest level.
+        /// Bytes of the coarsest level.
         least: u64,
     },
 }
 
-/// Textures of a budget have sides halved so often at most: of 512 pixels, 128 are left.
+/// Most halvings of the sides of textures for a budget: of 512 pixels, 128 remain.
 const HALVINGS: u32 = 2;
 
 impl Levels {
-    /// The finest level that fits, as the model, with `lods` coarser ones, and the impostor if there is one. Of two that fit
-    /// that with smaller textures comes before that with fewer triangles. `weigh` says how many bytes a model takes.
+    /// Finds the finest level that fits, as the model, with `lods` coarser ones, and the impostor if there is one.
+    /// Smaller textures are preferred to fewer triangles. `weigh` returns the bytes of a model.
     ///
     /// # Errors
-    /// Those of `weigh`; inside, [`AllowanceError`] with the least that there can be.
+    /// Those of `weigh`; inside, [`AllowanceError`] with the least possible size.
     pub fn within<E>(
         mut self,
         model: Model,
@@ -249,7 +258,7 @@ impl Levels {
             }
             let last = self.lods.len().min(level + 1 + lods as usize);
             let copies = self.copies.get(level..last).unwrap_or_default().to_vec();
-            let mut kept = Self { lods: self.lods[level + 1..last].to_vec(), copies };
+            let mut kept = Self { lods: self.lods[level + 1..last].to_vec(), copies, assembly: None };
             let mut model = self.lods[level].clone();
             if let Some((far, copies)) = &far {
                 kept.lods.push(far.clone());
@@ -274,7 +283,7 @@ impl Levels {
     }
 }
 
-/// Halves the sides of all textures, each once: those that are one stay one.
+/// Halves the sides of all textures, each once: shared ones stay shared.
 fn halve_textures<'a>(models: impl Iterator<Item = &'a mut Model>) {
     let mut done: Vec<(Arc<Texture>, Arc<Texture>)> = Vec::new();
     let mut half = |texture: &mut Option<Arc<Texture>>| {
@@ -286,7 +295,7 @@ fn halve_textures<'a>(models: impl Iterator<Item = &'a mut Model>) {
         }
         *whole = smaller;
     };
-    // The size of an impostor is asked for, and depth stands in the alpha of its normals.
+    // The size of an impostor is set by the user, and the alpha of its normals is depth.
     for material in models.flat_map(|m| &mut m.materials).filter(|m| m.impostor.is_none()) {
         half(&mut material.texture);
         half(&mut material.maps.normal);
@@ -295,7 +304,7 @@ fn halve_textures<'a>(models: impl Iterator<Item = &'a mut Model>) {
     }
 }
 
-/// A texture of half the sides: each pixel is the mean of four, colours by how much they cover.
+/// Returns a texture of half the sides: each pixel is the mean of four, with colours weighted by their coverage.
 fn halved(texture: &Texture) -> Texture {
     let (width, height) = (texture.width.div_ceil(2).max(1), texture.height.div_ceil(2).max(1));
     let mut pixels = Vec::with_capacity(4 * width as usize * height as usize);

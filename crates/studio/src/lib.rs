@@ -17,10 +17,13 @@
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```
 
+mod assembly;
 mod balls;
 mod checks;
 mod days;
 mod drawn;
+mod engine;
+mod engine_nodes;
 mod evaluate;
 mod flowers;
 mod leaf_blade;
@@ -28,6 +31,7 @@ mod leaves;
 mod levels;
 mod light_source;
 mod lit;
+mod lit_scene;
 mod lod;
 mod made;
 mod make;
@@ -52,6 +56,7 @@ mod template;
 mod trees;
 mod venation;
 
+pub use assembly::{AssemblyError, assemble};
 pub use balls::{LeafBall, LeafBalls, leaf_balls};
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
@@ -62,6 +67,10 @@ pub use base::{
 pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law, check_read};
 pub use days::ScannedDays;
 pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
+pub use engine::{
+    Engine, EngineSetting, ExportChoice, PrintedPlant, WrongEngineFile, name_after, print_plant,
+};
+pub use engine_nodes::write_engine_glb;
 pub use evaluate::{Evaluator, FrontView, make_from_sketch, make_levels_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
@@ -70,7 +79,10 @@ pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
 pub use light_source::{
     LightSourceError, LightSourceSpec, LightSources, PlaceOnDay, SkyShape, SourceFigures,
 };
-pub use lit::{EnergyFigures, LightFigures, LightOptions, LightUnit, LitOrgan, LitStand, light_stand};
+pub use lit::{
+    EnergyFigures, LIGHT_SCALE, LightFigures, LightOptions, LightUnit, LitOrgan, LitStand, light_stand,
+};
+pub use lit_scene::{shown_plants, stood_plants, without_textures};
 pub use lod::coarser;
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
@@ -86,8 +98,8 @@ pub use report::{
 pub use robot::{Robot, RobotError, write_robot};
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
-    PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_model, standing, standing_at,
-    tree_settings, tree_spec,
+    PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_copies, scene_model, standing,
+    standing_at, tree_settings, tree_spec,
 };
 pub use schemas::{flower_schema, leaf_schema, material_schema, sketch_schema, skin_schema};
 pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surface_places};
@@ -109,9 +121,9 @@ pub use template::{LeafTemplate, TemplateError};
 pub use trees::{
     GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
     ScanTreeOptions, ScannedTreeError, StructureModel, StructureModelError, StructureOptions, TreeError,
-    TreeEvaluator, TreeOptions, TreeSize, age_of_height, guided_methods, make_from_structure, make_tree,
-    make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec, scale_to_height, show_obstacles,
-    tree_blade, tree_schema, tree_size,
+    TreeEvaluator, TreeOfDbh, TreeOptions, TreeSize, age_of_height, guided_methods, make_from_structure,
+    make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec, scale_to_height,
+    show_obstacles, tree_blade, tree_of_dbh, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 
@@ -124,7 +136,7 @@ pub use {
     render, scan, shape, sketch, skin, spec,
 };
 
-/// The version that is written into reports and files.
+/// Version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The example of the README is compiled and run.

@@ -1,29 +1,31 @@
-//! Sky and sun as people say them: of a moment, of a clear day, or as they were measured.
+//! Sky and sun as people describe them: at a moment, on a clear day, or as measured.
 //!
 //! `LightSourceSpec -> LightSources { beams, unit, figures }`
 
 use light::{Beams, LightError, SkyKind, SunPlace, SunPosition, Sunlight};
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::lit::LightUnit;
 
-/// The share of the sun's energy that is photosynthetically active: 0.45 to 0.50 by air and season.
+/// Share of the sun's energy that is photosynthetically active: 0.45 to 0.50, depending on air and season.
 const PAR_SHARE: f64 = 0.48;
 
-/// PAR of the sky where nothing is said, W/m2.
+/// Default PAR of the sky, W/m2.
 const USUAL_DIFFUSE: f64 = 100.0;
 
-/// Linke's turbidity where nothing is said: clear air.
+/// Default turbidity by Linke: clear air.
 const USUAL_TURBIDITY: f64 = 3.0;
 
-/// The hour of the clock where nothing is said.
+/// Default hour of the clock.
 const NOON: f64 = 12.0;
 
 /// Parts of an hour in the sum of a day.
 const PARTS_OF_HOUR: u32 = 2;
 
-/// How the light of a sky is distributed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Distribution of the light of a sky.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum SkyShape {
     /// Three times as bright at the zenith as at the horizon (Moon and Spencer 1942).
     Overcast,
@@ -35,37 +37,37 @@ pub enum SkyShape {
 
 base::words!(SkyShape { Overcast = "overcast", Uniform = "uniform", Clear = "clear" });
 
-/// A place of the earth on a day.
+/// A place on earth on a day.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaceOnDay {
-    /// Where, and which day.
+    /// Place and day.
     pub place: SunPlace,
     /// The hour by the clock, 0 to 24; none: noon.
     pub hour: Option<f64>,
-    /// What the clock is ahead of universal time, hours; none: the longitude over 15, rounded.
+    /// Hours by which the clock is ahead of universal time; none: the longitude over 15, rounded.
     pub zone: Option<f64>,
     /// Linke's turbidity, 1 to 10; none: 3.
     pub turbidity: Option<f64>,
-    /// The sum of the day instead of an hour.
+    /// Whether to sum over the day instead of an hour.
     pub daily: bool,
 }
 
-/// Where light comes from. Irradiances are of photosynthetically active radiation (PAR) on a horizontal surface.
+/// Sources of light. Irradiances are of photosynthetically active radiation (PAR) on a horizontal surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightSourceSpec {
-    /// None: overcast, or clear with a sun.
+    /// Distribution of the sky; none: overcast, or clear with a sun.
     pub sky: Option<SkyShape>,
     /// PAR of the sky, W/m2; none: 100, or that of a clear sky at a place.
     pub diffuse: Option<f64>,
     /// PAR of the sun, W/m2; none: 0, or that of a clear sky at a place.
     pub direct: Option<f64>,
-    /// Where the sun stands, unless a place says so.
+    /// Position of the sun, unless a place gives it.
     pub sun: Option<SunPosition>,
-    /// Where the sun stands as it does there.
+    /// Place and day that give the position of the sun.
     pub place: Option<PlaceOnDay>,
 }
 
-/// Why there is no light.
+/// Reason why there is no light.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LightSourceError {
     /// A clear sky without a sun.
@@ -81,44 +83,53 @@ pub enum LightSourceError {
     /// Polar night.
     #[error("the sun does not rise there on that day: choose another day")]
     NoSunrise,
-    /// The place or the day is none.
+    /// The place or the day is invalid.
     #[error("{0}")]
     Place(LightError),
-    /// Of the beams.
+    /// The beams are invalid.
     #[error(transparent)]
     Light(#[from] LightError),
 }
 
-/// Where light comes from, for reports.
+/// Sources of light, for reports.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SourceFigures {
-    /// Of the sun on a horizontal surface, for each square metre.
+    /// Light of the sun on a horizontal surface, for each square metre.
     pub direct_per_m2: f64,
-    /// Of the sky on a horizontal surface, for each square metre.
+    /// Light of the sky on a horizontal surface, for each square metre.
     pub diffuse_per_m2: f64,
     /// `overcast`, `uniform`, `clear` or `measured`.
     pub sky: &'static str,
-    /// Where the sun stands: degrees from north over east.
+    /// Azimuth of the sun: degrees from north over east.
     pub sun_azimuth_deg: Option<f64>,
-    /// Degrees above the horizon.
+    /// Elevation of the sun, degrees above the horizon.
     pub sun_elevation_deg: Option<f64>,
-    /// Hours in the sun, of a day.
+    /// Hours of sunshine, for a day.
     pub day_hours: Option<f64>,
 }
 
-/// All light, and what it is counted in.
+/// All light, and its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightSources {
     /// Sky and suns.
     pub beams: Beams,
-    /// Watts at a moment, megajoules of a day.
+    /// Watts at a moment, megajoules for a day.
     pub unit: LightUnit,
-    /// For reports.
+    /// Figures for reports.
     pub figures: SourceFigures,
 }
 
+base::coded!(LightSourceError {
+    Self::ClearWithoutSun => "clear-without-sun" {},
+    Self::DirectWithoutSun => "direct-without-sun" {},
+    Self::NoSunrise => "no-sunrise" {},
+} wraps {
+    Self::Place(e) => e, LightError;
+    Self::Light(e) => e, LightError;
+});
+
 impl LightSources {
-    /// Light of sky and sun.
+    /// Makes the light of sky and sun.
     ///
     /// # Errors
     /// [`LightSourceError`].
@@ -136,7 +147,8 @@ impl LightSources {
         moment(spec, Some(sun), direct, spec.diffuse.unwrap_or(PAR_SHARE * diffuse))
     }
 
-    /// A sky as it was measured: from where (azimuth, elevation), and PAR on a horizontal surface from there, W/m2.
+    /// Makes a sky as it was measured: directions (azimuth, elevation), each with the PAR on a horizontal surface from
+    /// there, W/m2.
     ///
     /// # Errors
     /// [`LightSourceError::Light`]: light from below, numbers out of range, or none above 0.
@@ -146,7 +158,7 @@ impl LightSources {
         Self::of_measured(all)
     }
 
-    /// The same of beams that were added one by one.
+    /// Makes the same of beams that were added one by one.
     ///
     /// # Errors
     /// [`LightError::Dark`].
@@ -176,7 +188,7 @@ impl PlaceOnDay {
     }
 }
 
-/// The distribution of the sky.
+/// Returns the distribution of the sky.
 fn kind(
     spec: &LightSourceSpec,
     sun: Option<SunPosition>,
@@ -215,7 +227,7 @@ fn moment(
     Ok(LightSources { beams, unit: LightUnit::Watt, figures })
 }
 
-/// A clear day, part by part.
+/// Makes a clear day, part by part.
 fn clear_day(spec: &LightSourceSpec, there: &PlaceOnDay) -> Result<LightSources, LightSourceError> {
     let mut beams = Beams::default();
     let megajoules = PAR_SHARE * 3600.0 / f64::from(PARTS_OF_HOUR) / 1e6;

@@ -1,4 +1,4 @@
-//! Light on plants: what each organ and axis of a stand absorbs, in a table, as figures and as colours.
+//! Light on plants: the light that each organ and axis of a stand absorbs, in a table, as figures and as colours.
 //!
 //! `plants with their models -> LitScene -> absorb -> LitStand { organs, figures } -> CSV | coloured model`
 
@@ -16,19 +16,19 @@ use serde::Serialize;
 use crate::parts::{NOTHING, PARTS, part_is_of_axis, part_of_axis, part_of_organ};
 use crate::survey::{Stood, triangle_labels};
 
-/// What light is counted in.
+/// Unit of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum LightUnit {
     /// Watts, at one moment.
     #[serde(rename = "W")]
     Watt,
-    /// Megajoules, of a day.
+    /// Megajoules, for a day.
     #[serde(rename = "MJ")]
     Megajoule,
 }
 
 impl LightUnit {
-    /// As people read it.
+    /// Returns the unit as people read it.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Watt => "W",
@@ -36,7 +36,7 @@ impl LightUnit {
         }
     }
 
-    /// In names of columns.
+    /// Returns the unit in names of columns.
     const fn column(self) -> &'static str {
         match self {
             Self::Watt => "w",
@@ -45,23 +45,23 @@ impl LightUnit {
     }
 }
 
-/// Light on a stand: where it comes from and what becomes of it.
+/// Light on a stand: its sources, and the settings for following it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightOptions {
     /// Sky and sun.
     pub beams: Beams,
-    /// What the beams are counted in.
+    /// Unit of the beams.
     pub unit: LightUnit,
-    /// How it is followed. `ground_m` is the height of the ground; leaves that hang lower lower it.
+    /// Settings for following the light. `ground_m` is the height of the ground; leaves that hang below lower it.
     pub spec: LightSpec,
-    /// Leaves, petals and sepals.
+    /// Optics of leaves, petals and sepals.
     pub leaf: Optics,
-    /// All else.
+    /// Optics of all other parts.
     pub wood: Optics,
 }
 
 impl LightOptions {
-    /// With the optics of the field's tables.
+    /// Makes options with the optics of the field's tables.
     pub fn new(beams: Beams) -> Self {
         Self {
             beams,
@@ -82,42 +82,42 @@ pub struct LitOrgan {
     pub part: u8,
     /// Row of the plant's organs, or of its axes.
     pub row: i32,
-    /// Row of the axis that it is or that bears it; [`NOTHING`] for none.
+    /// Row of its axis, or of the axis that bears it; [`NOTHING`] for none.
     pub axis: i32,
     /// Branching order of that axis.
     pub order: u32,
-    /// What falls on it.
+    /// Light that falls on it.
     pub light: ReceiverLight,
 }
 
-/// Figures of a stand in light. What does not apply or was not measured is none.
+/// Figures of a stand in light. Figures that do not apply or were not measured are none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LightFigures {
-    /// What light is counted in.
+    /// Unit of the light.
     pub unit: LightUnit,
-    /// What light gives a square metre of a horizontal surface above the stand.
+    /// Light on a square metre of a horizontal surface above the stand.
     pub incoming_per_m2: f64,
-    /// What all organs and axes absorb.
+    /// Light absorbed by all organs and axes.
     pub absorbed: f64,
-    /// What leaves absorb.
+    /// Light absorbed by leaves.
     pub leaf_absorbed: f64,
-    /// What leaves absorb for each square metre of one side, over what a horizontal surface above the stand gets.
+    /// Light absorbed by leaves for each square metre of one side, over that on a horizontal surface above the stand.
     pub leaf_share: Option<f64>,
-    /// The share of the light above the ground of a cell that plants absorb; of stands that repeat themselves.
+    /// The share of the light above the ground of a cell that plants absorb; for stands that repeat themselves.
     pub fapar: Option<f64>,
-    /// The share of the light that meets a plant on its way to the ground; of stands that repeat themselves.
+    /// The share of the light that meets a plant on its way to the ground; for stands that repeat themselves.
     pub intercepted: Option<f64>,
     /// One side of all leaves, square metres.
     pub leaf_area_m2: f64,
-    /// Leaf area over ground, of a cell that repeats itself.
+    /// Leaf area over ground, for a cell that repeats itself.
     pub leaf_area_index: Option<f64>,
-    /// The k of Beer's law, 1 - intercepted = exp(-k LAI); of stands that repeat themselves.
+    /// The k of Beer's law, 1 - intercepted = exp(-k LAI); for stands that repeat themselves.
     pub extinction: Option<f64>,
     /// The share of leaf area that is in the sun; with a sun only.
     pub sunlit: Option<f64>,
-    /// Where the light of a cell goes.
+    /// Energy balance of a cell.
     pub balance: Option<EnergyFigures>,
-    /// Directions that were looked along.
+    /// Number of directions in which light was followed.
     pub directions: u64,
     /// Triangles.
     pub triangles: u64,
@@ -148,15 +148,15 @@ impl From<EnergyBalance> for EnergyFigures {
 /// A stand in light.
 #[derive(Clone, Debug)]
 pub struct LitStand {
-    /// Axes, then organs, of one plant after the other; those that have a surface.
+    /// Axes, then organs, of one plant after the other; only those that have a surface.
     pub organs: Vec<LitOrgan>,
-    /// Of all of them.
+    /// Figures of all of them.
     pub figures: LightFigures,
     /// Light on patches and in directions.
     pub absorption: Absorption,
 }
 
-/// What a receiver of the scene is.
+/// Owner of a receiver of the scene.
 #[derive(Clone, Copy)]
 struct Owner {
     plant: u32,
@@ -166,21 +166,23 @@ struct Owner {
     order: u32,
 }
 
-/// Leaves are crossed by fewer lines than this, if the figures of single ones are rough: by chance, a hundred are off by a tenth.
+/// Least lines of light that cross a leaf without its figures being rough: a hundred are off by a tenth by chance.
 const LINES_FEWEST: u64 = 100;
 
-/// The share of leaf area that may be so.
+/// Largest share of leaf area with rough figures.
 const ROUGH_MOST: f64 = 0.05;
 
-/// The densest stands that were measured have a leaf area index of 18 (Asner, Scurlock and Hicke 2003).
+/// Largest leaf area index: the densest stands that were measured have 18 (Asner, Scurlock and Hicke 2003).
 const LEAF_AREA_INDEX_MOST: f64 = 20.0;
 
-/// What meshes of leaves may have of the area of the leaves: needles and scales that are drawn as sheets have less or more.
+/// Range of the area of meshes of leaves over that of the leaves: needles and scales that are drawn as sheets have less
+/// or more.
 const LEAF_MESH: [f64; 2] = [0.7, 1.4];
 
-/// What each organ and axis of a stand absorbs.
+/// Computes the light that each organ and axis of a stand absorbs.
 ///
-/// Plants shade one another. Light is that of the meshes: holes of textures are not seen. Checks of the result go into the report.
+/// Plants shade one another. The meshes receive the light: holes of textures are ignored. Checks of the result go into
+/// the report.
 /// Guaranteed: the same bits for any executor. Cost: as [`absorb`].
 ///
 /// # Errors
@@ -214,18 +216,18 @@ pub fn light_stand(
     Ok(LitStand { organs, figures, absorption })
 }
 
-/// Whether a row of [`PARTS`] is counted as leaf.
+/// Whether a row of [`PARTS`] counts as leaf.
 fn is_leaf(part: u8) -> bool {
     part == part_of_organ(plant::OrganKind::Leaf)
 }
 
-/// Leaves, petals and sepals: what light goes through.
+/// Whether light passes through a row of [`PARTS`]: leaves, petals and sepals.
 fn is_thin(part: u8) -> bool {
     use plant::OrganKind::{Petal, Sepal};
     is_leaf(part) || [Petal, Sepal].into_iter().any(|kind| part == part_of_organ(kind))
 }
 
-/// The receivers of a plant: its axes, its organs, and what is neither.
+/// Returns the receivers of a plant: its axes, its organs, and parts that are neither.
 fn owners_of(plant: u32, stood: &Stood<'_>) -> impl Iterator<Item = Owner> {
     let row = |k: usize| i32::try_from(k).unwrap_or(i32::MAX);
     let axes = stood.plant.axes.iter().enumerate();
@@ -246,7 +248,7 @@ fn owners_of(plant: u32, stood: &Stood<'_>) -> impl Iterator<Item = Owner> {
     axes.chain(organs).chain([Owner { plant, part: body, row: NOTHING, axis: NOTHING, order: 0 }])
 }
 
-/// All triangles of a stand where they stand, in the order of plants, parts and rows.
+/// Returns all triangles of a stand in place, in the order of plants, parts and rows.
 fn scene_of(
     stand: &[Stood<'_>],
     options: &LightOptions,
@@ -291,7 +293,7 @@ fn figures_of(
     let leaf_area_m2: f64 = leaves().map(|l| l.area_m2).sum();
     let leaf_absorbed: f64 = leaves().map(|l| l.absorbed_w).sum();
     let absorbed: f64 = organs.iter().map(|o| o.light.absorbed_w).sum();
-    // Leaves that are seen from their edges alone show nothing of themselves.
+    // Leaves that are seen only edge-on show no area.
     let lit = leaves().filter_map(|l| Some((l.area_m2, l.sunlit?)));
     let [in_sun, seen] = lit.fold([0.0; 2], |[lit, all], (area, share)| [lit + area * share, all + area]);
     let cell = options.spec.repeat_m.map(|[width, depth]| width * depth);
@@ -383,8 +385,8 @@ fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], repor
     }
 }
 
-/// Shares of the light of the scale that are its colours: dark violet, purple, red, orange, pale yellow; sRGB.
-const SCALE: [[f64; 3]; 6] = [
+/// Colours of the scale at even shares of the light: dark violet, purple, red, orange, pale yellow; sRGB.
+pub const LIGHT_SCALE: [[f64; 3]; 6] = [
     [0.05, 0.03, 0.20],
     [0.30, 0.07, 0.48],
     [0.60, 0.16, 0.45],
@@ -396,7 +398,7 @@ const SCALE: [[f64; 3]; 6] = [
 /// Columns of light in files of structure.
 const LIGHT_COLUMNS: [&str; 4] = ["IncidentPAR", "AbsorbedPAR", "fAPAR", "Sunlit"];
 
-/// The share of patches that may be brighter than the scale ends.
+/// Share of patches that may be brighter than the end of the scale.
 const BRIGHTER: f64 = 0.02;
 
 impl LitStand {
@@ -411,12 +413,12 @@ impl LitStand {
     /// | `area_m2`, `height_m` | of one side of its mesh; of its middle |
     /// | `incident_w_m2`, `absorbed_w_m2` | on both sides, for each square metre of one side; `mj` for `w` of a day |
     /// | `absorbed_w` | all of it |
-    /// | `fapar` | `absorbed_w_m2` over what a horizontal surface above the plants gets |
+    /// | `fapar` | `absorbed_w_m2` over the light on a horizontal surface above the plants |
     /// | `sunlit` | the share of its area that is in the sun; empty without a sun |
-    /// | `lines` | how many lines of light cross it |
+    /// | `lines` | number of lines of light that cross it |
     ///
     /// # Errors
-    /// What the writer says.
+    /// The error of the writer.
     pub fn write_csv(&self, out: &mut dyn io::Write) -> io::Result<()> {
         let unit = self.figures.unit.column();
         writeln!(
@@ -449,8 +451,9 @@ impl LitStand {
         Ok(())
     }
 
-    /// Light as columns of a plant's axes and organs, for files of its structure: `IncidentPAR` and `AbsorbedPAR` (for each square
-    /// metre of one side, in the unit of the figures), `fAPAR` and `Sunlit`. `number`: of the plant in the stand, from 0.
+    /// Returns light as columns of a plant's axes and organs, for files of its structure: `IncidentPAR` and
+    /// `AbsorbedPAR` (for each square metre of one side, in the unit of the figures), `fAPAR` and `Sunlit`. `number`:
+    /// of the plant in the stand, from 0.
     pub fn columns(&self, number: u32, plant: &plant::Plant) -> Vec<AddedColumn> {
         let empty = |name: &str| AddedColumn {
             name: name.into(),
@@ -470,14 +473,14 @@ impl LitStand {
         columns
     }
 
-    /// What [`LIGHT_COLUMNS`] say of an organ.
+    /// Returns the values of [`LIGHT_COLUMNS`] for an organ.
     fn cells(&self, organ: &LitOrgan) -> [Option<f64>; LIGHT_COLUMNS.len()] {
         let light = &organ.light;
         let [incident, absorbed] = [light.incident_w, light.absorbed_w].map(|w| w / light.area_m2);
         [Some(incident), Some(absorbed), Some(absorbed / self.figures.incoming_per_m2), light.sunlit]
     }
 
-    /// What the end of the colours' scale stands for, for each square metre: all patches but the brightest 2 %.
+    /// Returns the light at the end of the scale of colours, for each square metre: all patches but the brightest 2 %.
     pub fn brightest(&self) -> f64 {
         let patches = self.absorption.patches.iter().filter(|p| p.area_m2 > 0.0);
         let mut values: Vec<f64> = patches.map(|p| p.absorbed_w / p.area_m2).collect();
@@ -488,8 +491,8 @@ impl LitStand {
         values.get(row).copied().unwrap_or_default().max(f64::MIN_POSITIVE)
     }
 
-    /// The stand in one model, coloured by what each patch absorbs for its area: from dark violet for nothing over red to pale
-    /// yellow at [`Self::brightest`]. `stand`: the one that was lit.
+    /// Returns the stand as one model, coloured by the light that each patch absorbs for its area: from dark violet for
+    /// nothing over red to pale yellow at [`Self::brightest`]. `stand`: the one that was lit.
     pub fn heat_map(&self, name: &str, stand: &[Stood<'_>]) -> Model {
         let standing: Vec<Standing<'_>> = stand.iter().map(|s| s.standing).collect();
         let mut model = crate::scene_model(name, &standing);
@@ -514,11 +517,11 @@ impl LitStand {
     }
 }
 
-/// A colour of the scale in linear light; `share` beyond 0 and 1 is taken for those.
+/// Returns a colour of the scale in linear light; `share` is limited to 0 to 1.
 fn colour_of(share: f64) -> [f32; 3] {
-    let at = share.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
-    let low = (ops::whole(at) as usize).min(SCALE.len() - 2);
-    let [from, to] = [SCALE[low], SCALE[low + 1]];
+    let at = share.clamp(0.0, 1.0) * (LIGHT_SCALE.len() - 1) as f64;
+    let low = (ops::whole(at) as usize).min(LIGHT_SCALE.len() - 2);
+    let [from, to] = [LIGHT_SCALE[low], LIGHT_SCALE[low + 1]];
     #[expect(clippy::cast_possible_truncation, reason = "a colour")]
     let mix = |k: usize| base::linear_of_srgb(ops::lerp(from[k], to[k], at - low as f64)) as f32;
     [0, 1, 2].map(mix)
@@ -581,7 +584,7 @@ mod tests {
     #[test]
     fn the_scale_ends_in_its_first_and_last_colour() {
         let ends = [colour_of(-1.0), colour_of(f64::NAN.max(2.0))];
-        for (end, wanted) in ends.iter().zip([SCALE[0], SCALE[5]]) {
+        for (end, wanted) in ends.iter().zip([LIGHT_SCALE[0], LIGHT_SCALE[5]]) {
             for (found, srgb) in end.iter().zip(wanted) {
                 assert!((f64::from(*found) - base::linear_of_srgb(srgb)).abs() < 1e-6);
             }

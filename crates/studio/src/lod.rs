@@ -1,4 +1,4 @@
-//! Coarser copies of a tree, for far away.
+//! Coarser copies of a tree, for a distant view.
 
 use std::sync::Arc;
 
@@ -7,29 +7,34 @@ use growth::Obstacles;
 use plant::{AxisKind, Blade, FlowerId, NodeId, Organ, OrganKind, Plant, Shape};
 use skin::{FoliageStyle, Shoots, SkinSpec};
 
-/// Fewer axes, leaves or flowers than this are not thinned in the first level: each of them is seen. In each further level,
-/// which is for half the size, half as many.
+/// Least axes that are thinned in the first level, because of fewer each is seen. In each further level, which is for
+/// half the size, half of this.
 const FEW_AXES: usize = 100;
+/// Least leaves that are thinned in the first level; in each further level half of this.
 const FEW_LEAVES: usize = 300;
-/// Flowers of a coarser copy are no wider than this share of the plant's size if they are halved more than once.
+/// Largest width of flowers of a coarser copy that are halved more than once, as a share of the plant's size.
 const WIDEST_FLOWER: f64 = 0.05;
+/// Least flowers that are thinned in the first level; in each further level half of this.
 const FEW_FLOWERS: usize = 120;
-/// A flower keeps all of its petals in the first level, half of so many in the second, and half of those in each further one.
+/// Number that gives the least petals of a thinned flower: it keeps all of them in the first level, at least half of
+/// this number in the second, and half of that in each further one.
 const FEW_PETALS: usize = 5;
 
-/// How often so many things can be halved, `level` times at most, before fewer are left than can be seen singly: `few` in
-/// the first level.
+/// Returns how often `count` things can be halved, at most `level` times, before so few are left that each is seen:
+/// `few` in the first level.
 fn halvings(count: usize, few: usize, level: u32) -> u32 {
     let few = few >> level.saturating_sub(1);
     (count / few.max(1)).checked_ilog2().unwrap_or(0).min(level)
 }
 
-/// Triangles of leaves over those of the level before, at most; of plants that lose no axes they make up for what these keep.
+/// Largest ratio of the triangles of leaves to those of the level before.
 const LEAVES_LEFT: f64 = 0.51;
+/// The same for plants that lose no axes: their leaves compensate for the triangles that axes keep.
 const LEAVES_LEFT_ALONE: f64 = 0.42;
 
-/// How often the leaves of a plant are halved: as seldom as a level still has at most half of the leaves' triangles of the
-/// one before, so that leaves that stay are no larger than they have to be. The first level halves them once.
+/// Returns how often the leaves of a plant are halved: as seldom as a level still has at most half of the leaves'
+/// triangles of the one before, so that the remaining leaves are no larger than necessary. The first level halves them
+/// once.
 fn leaf_halvings(plant: &Plant, skin: &SkinSpec, places: &Places, level: u32) -> u32 {
     let (level, count) = (level.min(6), leaves(plant).count());
     let first = halvings(count, FEW_LEAVES, level.min(1));
@@ -63,8 +68,8 @@ fn leaf_halvings(plant: &Plant, skin: &SkinSpec, places: &Places, level: u32) ->
     halved
 }
 
-/// How often the flowers of a plant are halved, and the petals of each. From the second level on petals go first, and of
-/// flowers that would become wider than they may be more petals.
+/// Returns how often the flowers of a plant are halved, and the petals of each. From the second level on petals are
+/// halved first, and more petals of flowers that would become too wide.
 fn flower_halvings(plant: &Plant, level: u32) -> [u32; 2] {
     let petals = || plant.organs.iter().filter(|o| o.kind == OrganKind::Petal);
     let of_each = petals().count() / plant.flowers.len().max(1);
@@ -79,7 +84,7 @@ fn flower_halvings(plant: &Plant, level: u32) -> [u32; 2] {
     [flowers, most_petals.min(first.max(level - flowers))]
 }
 
-/// How a coarser copy of a plant is skinned: with the triangles of one of as many parts as the plant has.
+/// Returns the skin settings of a coarser copy: with the triangles of a plant of as many parts as the original has.
 fn crowded(plant: &Plant, skin: &SkinSpec, level: u32) -> SkinSpec {
     let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
     let crowd = skin.crowd.unwrap_or([axes, plant.organs.len()]);
@@ -88,13 +93,13 @@ fn crowded(plant: &Plant, skin: &SkinSpec, level: u32) -> SkinSpec {
     SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), ..skin.clone() }
 }
 
-/// Where leaves or flowers stand, each by a number of its axis and its place among those of that axis.
+/// Places of leaves or flowers, each given by a number of its axis and its position among those of that axis.
 #[derive(Default)]
 struct Places(Vec<(u64, usize)>);
 
 impl Places {
-    /// Of things that these nodes bear, with a key each for those that nothing bears.
-    fn of(plant: &Plant, borne: impl Iterator<Item = (Option<NodeId>, u64)>) -> Self {
+    /// Finds the places of things that these nodes bear, with a key each for those without a bearer.
+    fn find(plant: &Plant, borne: impl Iterator<Item = (Option<NodeId>, u64)>) -> Self {
         let mut counts = vec![0_usize; plant.axes.len()];
         let mixed = |key: u64| base::Seed::new(key).child(0).number();
         let place = |(bearer, key): (Option<NodeId>, u64)| {
@@ -106,11 +111,11 @@ impl Places {
     }
 
     fn of_leaves(plant: &Plant) -> Self {
-        Self::of(plant, leaves(plant).map(|o| (o.bearer, o.key)))
+        Self::find(plant, leaves(plant).map(|o| (o.bearer, o.key)))
     }
 
-    /// Whether the thing of a row outlives so many halvings. Of those of an axis one in two does, now left and now right of
-    /// it, so that no gaps come about; where an axis has one thing, that of one axis in two does.
+    /// Whether the thing of a row remains after `halvings`. One in two on an axis does, alternately the left and the
+    /// right one, so that no gaps appear; where each axis has one thing, that of one axis in two does.
     fn stays(&self, row: usize, halvings: u32) -> bool {
         let Some(&(axis, mut place)) = self.0.get(row) else { return true };
         (0..halvings).all(|h| {
@@ -125,7 +130,7 @@ fn leaves(plant: &Plant) -> impl Iterator<Item = &Organ> {
     plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf)
 }
 
-/// How much larger leaves are after so many halvings than on `plant`: those that stay cover what all did.
+/// Returns how much larger leaves are after `halvings` than on `plant`: the remaining ones cover the area of all.
 fn larger(plant: &Plant, places: &Places, halvings: u32) -> f64 {
     let (mut all, mut kept) = (0.0, 0.0);
     for (row, leaf) in leaves(plant).enumerate() {
@@ -136,8 +141,8 @@ fn larger(plant: &Plant, places: &Places, halvings: u32) -> f64 {
     if kept > 0.0 { (all / kept).sqrt().min(f64::from(1_u32 << halvings)) } else { 1.0 }
 }
 
-/// Gives leaves of a coarser copy of `plant` that may enter an obstacle their own size again, in which they grew beside
-/// it; or, where they are drawn too wide for that too, a smaller one. `own`: how `plant` is skinned.
+/// Gives leaves of a coarser copy of `plant` that may enter an obstacle their original size, at which they grew next to
+/// it; or a smaller one, where they are drawn too wide even for that. `own`: the skin settings of `plant`.
 pub(crate) fn keep_out(
     copy: &mut Plant,
     (skin, own): (&SkinSpec, &SkinSpec),
@@ -160,14 +165,16 @@ pub(crate) fn keep_out(
     }
 }
 
-/// From so many leaves on an axis on, they may be the leaflets of a frond.
+/// Least leaves on an axis that may be the leaflets of a frond.
 const FROND: usize = 16;
-/// How far leaflets of a frond lie in one plane, and how parallel those of one side are, as mean cosines.
+/// Least mean cosine between leaflets of a frond and its plane.
 const LEVEL: f64 = 0.7;
+/// Least mean cosine between leaflets on one side of a frond.
 const PARALLEL: f64 = 0.95;
-/// Fewer leaflets than this keep their form in the second level: they hook where they hang, and that is seen.
+/// Least leaflets that lose their form in the second level: fewer hook where they hang, and that is seen.
 const MANY_LEAFLETS: usize = 1_000;
-/// A leaflet of a frond, or a petal, that stands for several is at most so wide over its length before it becomes longer, too.
+/// Largest width over length of a leaflet of a frond, or of a petal, that stands for several, before it becomes longer,
+/// too.
 const STOUT: f64 = 1.0;
 
 /// Whether the leaves of a plant stand on fronds, as those of palms and ferns, and are drawn as outlines.
@@ -191,14 +198,14 @@ fn has_fronds(plant: &Plant, skin: &SkinSpec) -> bool {
     blades && all.len() >= FROND * axes.len().max(1) && flat >= LEVEL * n && parallel >= PARALLEL * n
 }
 
-/// The level whose form leaflets of fronds have: where they are few, that of the one before.
+/// Returns the level whose form leaflets of fronds have: where they are few, that of the level before.
 fn leaflet_level(plant: &Plant, level: u32) -> u32 {
     level.saturating_sub(u32::from(leaves(plant).count() < MANY_LEAFLETS))
 }
 
-/// Makes leaflets of fronds that stand for several `times` as large in area: wider as long as they are slender, which leaves
-/// fronds as wide as they are. From the second level on they have no leaflets of their own. How much larger they are then still
-/// to be.
+/// Makes leaflets of fronds that stand for several `times` as large in area: wider while they are slender, which keeps
+/// fronds at their width. From the second level on all have one plain form. Returns the enlargement that is still
+/// missing.
 fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
     let mut left: f64 = 1.0;
     for shape in &mut copy.shapes {
@@ -206,7 +213,8 @@ fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
         let length = blade.length();
         if level > 1 {
             let half = geom::signed_area(&blade.outline) / length;
-            // A wide foot, so that those of a frond hang together along its stalk; folded in the second level, and flat after it.
+            // A wide foot, so that those of a frond join along its stalk; folded in the second level, and flat after
+            // it.
             let (right, at) = (DVec2::new(half, 0.0), DVec2::new(0.0, length));
             blade.outline = vec![DVec2::ZERO, right, at, DVec2::new(-half, 0.0)];
             if level > 2 {
@@ -221,7 +229,7 @@ fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
     left
 }
 
-/// Makes a blade wider, up to so many `times`, while it is slender; how many times that is.
+/// Makes a blade wider, up to `times`, while it is slender; returns the factor.
 fn widened(blade: &mut Blade, times: f64) -> Option<f64> {
     let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
     if blade.needles.is_some() || half.is_nan() || half <= 0.0 {
@@ -233,8 +241,8 @@ fn widened(blade: &mut Blade, times: f64) -> Option<f64> {
     Some(wider)
 }
 
-/// Makes petals that stand for several `times` as large in area wider as long as they are slender, so that spikes and plumes
-/// stay as thick as they are; [`cover_as_much`] then makes them no longer than they have to be.
+/// Makes petals that stand for several `times` as large in area: wider while they are slender, so that spikes and
+/// plumes keep their thickness; [`cover_as_much`] then makes them no longer than necessary.
 fn widen_petals(copy: &mut Plant, plant: &Plant, times: f64) {
     let mut seen = vec![false; copy.shapes.len()];
     for petal in plant.organs.iter().filter(|o| o.kind == OrganKind::Petal) {
@@ -246,8 +254,8 @@ fn widen_petals(copy: &mut Plant, plant: &Plant, times: f64) {
     }
 }
 
-/// Gives a coarser copy of a plant its longest axes. Where each node of the plant is in the copy: itself, or the node that bore
-/// its axis.
+/// Gives a coarser copy of a plant its longest axes. Returns where each node of the plant is in the copy: itself, or
+/// the node that bore its axis.
 fn longest_axes(
     copy: &mut Plant,
     plant: &Plant,
@@ -260,7 +268,8 @@ fn longest_axes(
     };
     let mut lengths: Vec<f64> = plant.axes.iter().map(length).collect();
     base::sort_by(&mut lengths, |a, b| b.total_cmp(a));
-    // Shoots have twigs of their own, and leaves hide those of a crown, but leaflets without the stalk of their frond float.
+    // Shoots have twigs of their own, and leaves hide those of a crown, but leaflets without the stalk of their frond
+    // float.
     let hidden = !fronds && leaves(plant).count() > plant.axes.len();
     let finer = u32::from((shoots || hidden) && level > 1);
     let kept_axes = lengths.len() >> halvings(lengths.len(), FEW_AXES, level + finer);
@@ -287,20 +296,30 @@ fn longest_axes(
     moved
 }
 
-/// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
+/// Returns a copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and its skin settings.
 ///
-/// Each level leaves out the shorter half of the axes, and leaves and flowers as far as it has to for half of the triangles, as
-/// long as there are many for the size at which it is seen; from the second level on there are no roots, and flowers have fewer
-/// petals, many of them no stalks. Leaves and flowers that stay grow so that together they cover as much, leaflets of fronds in
-/// width before length; those of axes that are gone sit on what bore the axes. Which stay follows from the keys of their axes and
-/// their places on these, evenly along each: every level's are among those of the one before. Sides and rings become fewer. With
-/// [`FoliageStyle::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of twice as many leaves
-/// from each level to the next. Cost: n log n in axes and leaves.
+/// Each level omits the shorter half of the axes, and as many leaves and flowers as necessary for half of the
+/// triangles, while there are many for the size at which it is seen; from the second level on there are no roots,
+/// flowers have fewer petals, and many flowers have no stalks. The remaining leaves and flowers grow so that together
+/// they cover the same area, leaflets of fronds in width before length; those of omitted axes sit on the bearers of the
+/// axes. The choice follows from the keys of their axes and their positions on these, evenly along each: every level's
+/// are among those of the one before. Sides and rings become fewer. With [`FoliageStyle::ByLevel`] leaves become cards
+/// in the first level, and cards of shoots in the others, with twice as many leaves from each level to the next. Cost:
+/// n log n in axes and leaves.
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
+    coarser_with(plant, skin, level, None)
+}
+
+/// [`coarser`] with the painted shoots of another plant, if they fit.
+pub(crate) fn coarser_with(
+    plant: &Plant,
+    skin: &SkinSpec,
+    level: u32,
+    painted: Option<&Shoots>,
+) -> (Plant, SkinSpec) {
     let level = level.min(6);
-    let shoots = (skin.foliage == FoliageStyle::ByLevel && level > 0)
-        .then(|| Shoots::of(plant).map(Arc::new))
-        .flatten();
+    let own = || painted.and_then(|s| s.lent(plant)).or_else(|| Shoots::find(plant)).map(Arc::new);
+    let shoots = (skin.foliage == FoliageStyle::ByLevel && level > 0).then(own).flatten();
     let mut copy = Plant {
         name: plant.name.clone(),
         shapes: plant.shapes.clone(),
@@ -311,7 +330,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     let moved = longest_axes(&mut copy, plant, level, [shoots.is_some(), fronds]);
     let now = |bearer: Option<NodeId>| bearer.and_then(|b| moved.get(b.index()).copied().flatten());
     let [flower_halvings, petal_halvings] = flower_halvings(plant, level);
-    let places = Places::of(plant, plant.flowers.iter().map(|f| f.bearer).zip(0..));
+    let places = Places::find(plant, plant.flowers.iter().map(|f| f.bearer).zip(0..));
     let mut flowers: Vec<Option<FlowerId>> = Vec::with_capacity(plant.flowers.len());
     for (row, flower) in plant.flowers.iter().enumerate() {
         let id = places.stays(row, flower_halvings).then_some(FlowerId::new(copy.flowers.len()));
@@ -346,7 +365,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
                 continue;
             }
         }
-        // A stalk stays as it is: it leads to the middle of its flower.
+        // A stalk is unchanged: it leads to the middle of its flower.
         let larger = match organ.kind {
             OrganKind::Leaf => larger,
             OrganKind::Pedicel => 1.0,
@@ -371,8 +390,8 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     (copy, coarse)
 }
 
-/// Gives the leaves or petals of a coarser copy the size at which they cover what those of the plant do as both are drawn: of
-/// few triangles a leaf has not the area of its form.
+/// Gives the leaves or petals of a coarser copy the size at which they cover the same area as those of the plant, both
+/// as drawn: a leaf of few triangles has not the area of its form.
 fn cover_as_much(
     copy: &mut Plant,
     coarse: &SkinSpec,
@@ -436,7 +455,7 @@ mod tests {
         assert_eq!(widened(&mut blade(f64::NAN), 2.0), None);
     }
 
-    /// A crown of so many fronds of twenty leaflets, which fall off from the stalk by so many radians on both sides.
+    /// Makes a crown of `count` fronds of twenty leaflets, which hang from the stalk by `falls` radians on both sides.
     fn fronds(count: u32, falls: f64) -> Plant {
         let mut plant = Plant { name: "palm".to_owned(), ..Plant::default() };
         plant.shapes.push(Shape::Blade(plant::BladeForm::Leaflet.blade()));
@@ -481,7 +500,7 @@ mod tests {
         assert!(has_fronds(&palm, &skin));
         for level in 1..=2 {
             let (copy, _) = coarser(&palm, &skin, level);
-            // Of an axis that is gone leaves are borne by the stem, far from where they lie.
+            // The stem bears the leaves of an omitted axis, far from where they lie.
             let away =
                 |o: &Organ| o.bearer.map_or(1.0, |b| copy.nodes.position[b.index()].distance(o.frame.origin));
             assert!(leaves(&copy).count() >= 60 && leaves(&copy).all(|o| away(o) < 1e-9), "{level}");

@@ -1,4 +1,4 @@
-//! What makers give: a plant, its meshes, its entry of the report.
+//! Results of makers: a plant, its meshes, its entry of the report.
 
 use base::{Digest, Report, Run, Stopped};
 use document::PlantEdit;
@@ -15,7 +15,7 @@ use crate::shaping::EditReport;
 /// Everything made from one drawing.
 #[derive(Clone, Debug)]
 pub struct Made {
-    /// What was meant, still flat.
+    /// The reading, still flat.
     pub reading: Reading,
     /// The plant.
     pub plant: Plant,
@@ -32,17 +32,17 @@ pub struct MadePlant {
     pub plant: Plant,
     /// Its meshes and materials.
     pub model: Model,
-    /// What of the plant lies where in the model.
+    /// Places of the plant's parts in the model.
     pub layout: Layout,
-    /// How it was meshed.
+    /// Skin settings with which it was meshed.
     pub(crate) skin: SkinSpec,
     /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
     pub item: ItemReport,
 }
 
 impl MadePlant {
-    /// A coarser copy of the meshes, with the same materials: each level has at most half of the triangles of the one
-    /// before. Plants of hundreds of leaves or axes have fewer of them, others all.
+    /// Returns a coarser copy of the meshes, with the same materials: each level has at most half of the triangles of
+    /// the one before. Plants of hundreds of leaves or axes lose some of them, others keep all.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -50,7 +50,7 @@ impl MadePlant {
         Ok(coarse(&self.plant, &self.skin, &self.model, level, run)?.0)
     }
 
-    /// Coarser copies and the like.
+    /// Returns coarser copies and the other levels of `spec`.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -58,8 +58,8 @@ impl MadePlant {
         coarser_copies(spec, (&self.model, &self.plant, &self.layout), &self.skin, run)
     }
 
-    /// With an entry that tells counts, times, warnings, and what became of the edits that were asked for; [`Self::told`]
-    /// tells the digest.
+    /// Makes an entry with counts, times, warnings and the outcomes of the requested edits; [`Self::with_digest`] adds
+    /// the digest.
     pub(crate) fn untold(
         plant: Plant,
         ((model, layout), skin): ((Model, Layout), SkinSpec),
@@ -87,7 +87,7 @@ impl MadePlant {
         Self { plant, model, layout, skin, item }
     }
 
-    /// With checks of what the maker alone knows.
+    /// Adds checks of facts that only the maker knows.
     pub(crate) fn check(mut self, checks: impl FnOnce(&mut Report)) -> Self {
         let mut report = Report::default();
         checks(&mut report);
@@ -95,21 +95,21 @@ impl MadePlant {
         self
     }
 
-    /// With the digest of the meshes.
-    pub(crate) fn told(mut self) -> Self {
+    /// Adds the digest of the meshes.
+    pub(crate) fn with_digest(mut self) -> Self {
         self.item.digest = digest(&self.model);
         self
     }
 }
 
-/// The digest of a plant's meshes.
+/// Returns the digest of a plant's meshes.
 pub(crate) fn digest(model: &Model) -> String {
     let mut digest = Digest::new();
     digest.add(model);
     digest.hex()
 }
 
-/// The levels of a plant without pictures of its own.
+/// Makes the levels of a plant without pictures of its own.
 pub(crate) fn coarser_copies(
     spec: &LevelSpec,
     (model, plant, layout): (&Model, &Plant, &Layout),
@@ -123,7 +123,7 @@ pub(crate) fn coarser_copies(
     Levels::new(spec, (model, plant, layout), |_| Ok(levels.next()), run)
 }
 
-/// [`level_of`] a plant without pictures of its own.
+/// Makes a level of a plant without pictures of its own, see [`level_of`].
 pub(crate) fn coarse(
     plant: &Plant,
     skin: &SkinSpec,

@@ -1,4 +1,4 @@
-//! From a drawing to everything that is made of it.
+//! From a drawing to all its results.
 
 use base::LiteMap;
 
@@ -13,29 +13,29 @@ use crate::template::LeafTemplate;
 /// Classes that the user set, by stroke index in the drawing.
 pub type ClassOverrides = LiteMap<u32, StrokeClass>;
 
-/// What is asked of a sketch: saved with the document.
+/// Options of a sketch, saved with the document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SketchOptions {
-    /// How the drawing is understood and given depth.
+    /// Settings for reading the drawing and giving it depth.
     pub spec: SketchSpec,
-    /// How the plant is meshed.
+    /// Settings for meshing the plant.
     pub skin: SkinSpec,
     /// Classes that the user set.
     pub classes: ClassOverrides,
-    /// What strokes were shown as while the drawing grew, by stroke index: not given up without clear evidence. Empty for
-    /// a drawing without such a history.
+    /// Classes that strokes were shown as while the drawing grew, by stroke index: not given up without clear evidence.
+    /// Empty for a drawing without such a history.
     pub shown: LiteMap<u32, StrokeClass>,
     /// A photograph under the drawing, whose colours traced organs take.
     pub photo: Option<Photo>,
     /// The leaf that the plant bears instead of the drawn or built-in ones.
     pub leaf: Option<LeafTemplate>,
-    /// Edits by hand, done on the plant in this order.
+    /// Hand edits, applied to the plant in this order.
     pub edits: Vec<PlantEdit>,
 }
 
 impl SketchOptions {
-    /// What a sketch of a document asks for; colours follow its seed as everything else does. The defaults for a
-    /// plant of another maker. A leaf that it bears is not among them: [`crate::SceneEvaluator`] finds it.
+    /// Returns the options of a sketch of a document; colours follow its seed as everything else does. The defaults for
+    /// a plant of another maker. A leaf that it bears is not included: [`crate::SceneEvaluator`] finds it.
     pub fn of_plant(plant: &DocumentPlant) -> Self {
         let settings = plant.settings();
         let Some(sketch) = settings.sketch() else { return Self::default() };
@@ -51,14 +51,14 @@ impl SketchOptions {
     }
 }
 
-/// The materials that the organs of a plant of a document wear, with the pixels of their pictures. A picture that does not
-/// decode is left out: what wears it is plain.
+/// Returns the materials that the organs of a plant of a document wear, with the pixels of their pictures. A picture
+/// that does not decode is left out, and its organs are plain.
 pub fn worn(plant: &DocumentPlant) -> Worn {
     let pictures = &plant.settings().pictures;
     plant.wear().worn(|name| pictures.get(name)?.texture(formats::read_picture))
 }
 
-/// Why nothing was made.
+/// Reason why nothing was made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MakeError {
@@ -69,10 +69,10 @@ pub enum MakeError {
     NoStrokes {
         /// Name of the drawing.
         name: String,
-        /// Strokes that the file holds.
+        /// Number of strokes in the file.
         strokes: usize,
     },
-    /// A class was set for a stroke that is not there.
+    /// A class was set for a stroke that does not exist.
     #[error(
         "a class is set for stroke {index}, but drawing \"{name}\" has {strokes} strokes (numbered from 0)"
     )]
@@ -81,13 +81,13 @@ pub enum MakeError {
         name: String,
         /// The index given.
         index: u32,
-        /// Strokes that the drawing holds.
+        /// Number of strokes in the drawing.
         strokes: usize,
     },
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// It would have been too much.
+    /// The result would exceed the budget.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
 }

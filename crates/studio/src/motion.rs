@@ -5,9 +5,9 @@ use core::ops::Range;
 use glam::DVec3;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
 
-/// The model of the `points` of a day: a part an organ, of those that `organs` says are its rows.
+/// Returns the model of the `points` of a day: one part for each organ, of the rows that `organs` gives.
 ///
-/// With `faces` a mesh of as many vertices keeps its triangles, texture coordinates and colours; without, parts are
+/// With `faces`, a mesh of as many vertices keeps its triangles, texture coordinates and colours; without, parts are
 /// clouds of points.
 pub fn motion_model(
     name: &str,
@@ -39,8 +39,8 @@ pub fn motion_model(
     model
 }
 
-/// Gives the parts of [`motion_model`] the colours of their points, sRGB bytes, one list a part; a part whose list is not of as
-/// many stays as it is.
+/// Gives the parts of [`motion_model`] the colours of their points, sRGB bytes, one list for each part; a part whose
+/// list has another length is unchanged.
 pub fn colour_points(model: &mut Model, colors: &[Vec<[u8; 3]>]) {
     for (part, colors) in model.parts.iter_mut().zip(colors) {
         if colors.is_empty() || colors.len() != part.mesh.positions.len() {
@@ -53,7 +53,7 @@ pub fn colour_points(model: &mut Model, colors: &[Vec<[u8; 3]>]) {
     }
 }
 
-/// A scan as a model of points without triangles, with their colours.
+/// Returns a scan as a model of points without triangles, with their colours.
 pub fn cloud_model(name: &str, cloud: &PointCloud) -> Model {
     let mut mesh = TriMesh::default();
     for p in &cloud.points {

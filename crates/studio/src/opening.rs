@@ -1,6 +1,6 @@
 //! A drawn plant whose flowers open: its own petals, from the bud to full bloom and on to wilting.
 //!
-//! drawing -> plant -> (plant without flowers, a [`bloom::FlowerSpec`] a flower) -> the plant of any day
+//! drawing -> plant -> (plant without flowers, a [`bloom::FlowerSpec`] for each flower) -> the plant of any day
 
 use base::{Run, Seed, Stopped};
 use bloom::{FlowerSpec, GrowthLaw, Insertion, PetalForm, PetalMesh, Seat, Stamens, Whorl};
@@ -25,7 +25,7 @@ pub struct OpeningPlant {
     pub days: [f64; 2],
     /// The entry of the report for the plant as it was drawn.
     pub item: ItemReport,
-    /// The plant without what its flowers are made of.
+    /// The plant without the organs of its flowers.
     rest: Plant,
     skin: SkinSpec,
     size_m: f64,
@@ -33,7 +33,7 @@ pub struct OpeningPlant {
     flowers: Vec<Placed>,
 }
 
-/// A flower and where it sits.
+/// A flower and its place.
 #[derive(Clone, Debug)]
 struct Placed {
     spec: FlowerSpec,
@@ -43,7 +43,7 @@ struct Placed {
     worn: Option<u32>,
 }
 
-/// Why no flower opens.
+/// Reason why no flower opens.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OpeningError {
@@ -80,7 +80,8 @@ impl OpeningPlant {
         Self::of_made(&drawing.name, (&made.plant, &made.item), &options.skin)
     }
 
-    /// As [`OpeningPlant::new`], of a plant that was made of a drawing already: plant and entry of the report.
+    /// Prepares the flowers of a plant already made of a drawing, as [`OpeningPlant::new`] does: plant and entry of the
+    /// report.
     ///
     /// # Errors
     /// [`OpeningError`].
@@ -89,7 +90,7 @@ impl OpeningPlant {
         (plant, item): (&Plant, &ItemReport),
         skin: &SkinSpec,
     ) -> Result<Self, OpeningError> {
-        let natural = PetalColor::of(plant, skin).linear();
+        let natural = PetalColor::for_plant(plant, skin).linear();
         let mut rest = plant.clone();
         let flower_organs =
             |kind| matches!(kind, OrganKind::Petal | OrganKind::Disc | OrganKind::Stamen | OrganKind::Pistil);
@@ -111,19 +112,19 @@ impl OpeningPlant {
         Ok(Self { name: name.into(), days, item, rest, skin, size_m, kept, flowers })
     }
 
-    /// The law of the first flower, for use without a fitted one.
+    /// Returns the law of the first flower, for use without a fitted one.
     pub fn law(&self) -> GrowthLaw {
         let rate = self.flowers.first().map_or(0.95, |f| f.spec.rate_per_day);
         GrowthLaw::logistic(&self.name, self.days[0], rate)
     }
 
-    /// The plant at a day.
+    /// Makes the plant at a day.
     ///
     /// Guaranteed: the same vertices and triangles at every day.
     ///
     /// # Errors
     /// [`Stopped`].
-    pub fn at(
+    pub fn make_on_day(
         &mut self,
         day: f64,
         law: &GrowthLaw,
@@ -135,7 +136,7 @@ impl OpeningPlant {
         for (k, placed) in self.flowers.iter().enumerate() {
             let first = plant.organs.len();
             placed.spec.add_to(&mut plant, &placed.seat, day, law, seed.child(k as u64));
-            // It takes the place of the drawn one.
+            // It replaces the drawn one.
             if let Some(open) = plant.flowers.pop() {
                 plant.flowers[placed.flower.index()] = open;
             }
@@ -151,7 +152,8 @@ impl OpeningPlant {
         Ok(OpenedPlant { plant, model, layout, overlap })
     }
 
-    /// Coarser copies of the meshes of one day and the like, with the same materials: at most half of the triangles a level.
+    /// Returns coarser copies of the meshes of one day and the other levels, with the same materials: at most half of
+    /// the triangles with each level.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -159,7 +161,7 @@ impl OpeningPlant {
         coarser_copies(spec, (&open.model, &open.plant, &open.layout), &self.steady(), run)
     }
 
-    /// A level of a plant of one day that this made, and of its model.
+    /// Makes a level of a plant of one day that this made, and of its model.
     pub(crate) fn coarse(
         &self,
         (plant, model): (&Plant, &Model),
@@ -181,13 +183,13 @@ pub struct OpenedPlant {
     pub plant: Plant,
     /// Its meshes.
     pub model: Model,
-    /// What of the plant lies where in the meshes.
+    /// Places of the plant's parts in the meshes.
     pub layout: Layout,
     /// The greatest share of petal triangles of a flower that cross another petal.
     pub overlap: f64,
 }
 
-/// The mean of what petals are painted; `natural`: what those are that have no colour of their own.
+/// Returns the mean paint of petals; `natural`: colour of those without one of their own.
 fn dye<'a>(petals: impl Iterator<Item = &'a Paint>, natural: [f32; 3]) -> [f32; 3] {
     let (mut sum, mut count) = ([0.0_f32; 3], 0.0_f32);
     for paint in petals {
@@ -198,7 +200,7 @@ fn dye<'a>(petals: impl Iterator<Item = &'a Paint>, natural: [f32; 3]) -> [f32; 
     sum.map(|s| (s / count.max(1.0)).clamp(0.0, 1.0))
 }
 
-/// The first stroke of those whose material most petals of a flower wear; none if most wear none of a stroke.
+/// Returns the first stroke whose material most petals of a flower wear; `None` if most wear none of a stroke.
 fn most_worn(organs: &[&Organ], skin: &SkinSpec) -> Option<u32> {
     let petals = || organs.iter().filter(|o| o.kind == OrganKind::Petal);
     let row = |o: &Organ| o.source.and_then(|s| skin.worn.strokes.get(&s)).copied();
@@ -207,15 +209,15 @@ fn most_worn(organs: &[&Organ], skin: &SkinSpec) -> Option<u32> {
     row(of).and(of.source)
 }
 
-/// Petals round a middle from which on it is a disc of florets.
+/// Least petals round a middle that makes it a disc of florets.
 const RAYS: u32 = 9;
-/// A flower whose axis points to the viewer by no more than this is seen from the side.
+/// Largest component of a flower's axis towards the viewer at which the flower is seen from the side.
 const FACING: f64 = 0.35;
 
-/// A flower that was drawn from the side hides the petals behind those that are seen.
+/// Adds the petals that a flower drawn from the side hides.
 ///
-/// Up to four that are seen are a ring of three or more, and another ring stands within it (tulip, poppy, cross-bearer).
-/// Of more the two at the edges are seen once and all between them hide another.
+/// Up to four visible petals are a ring of at least three, with another ring within it (tulip, poppy, cross-bearer). Of
+/// more, the two at the edges are single and each of the others hides another.
 fn add_hidden(whorls: &mut Vec<Whorl>) {
     let [seen] = whorls.as_mut_slice() else { return };
     if seen.count >= 5 {
@@ -242,7 +244,7 @@ fn add_hidden(whorls: &mut Vec<Whorl>) {
     whorls.push(inner);
 }
 
-/// The flower as data; none without petals.
+/// Returns the flower as data; `None` without petals.
 fn placed(
     plant: &Plant,
     (id, flower): (FlowerId, &Flower),
@@ -265,7 +267,7 @@ fn placed(
     base::sort_by(&mut blades, |a, b| b.0.total_cmp(&a.0));
     let rings = flower.whorls.clamp(1, count);
     let each = count.div_ceil(rings) as usize;
-    // A disc of florets is what was drawn as one, or what many rays stand round; the middle of a lily is none.
+    // A disc of florets is a drawn one, or one with many rays around it; the middle of a lily is none.
     let rays = count >= RAYS;
     let discs = organs.iter().filter(|o| o.kind == OrganKind::Disc && (rays || o.source.is_some()));
     let disc = discs.into_iter().find_map(|o| match plant.shapes.get(o.shape.index())? {

@@ -1,20 +1,20 @@
-//! What a point, pixel or triangle lies on: the words of labels, and their rows.
+//! Labels of points, pixels and triangles: the parts that they lie on, as words, and their rows.
 
 use plant::{AxisKind, OrganKind};
 
-/// What a point lies on, by the row that is its label.
+/// Parts that a point can lie on, by the row that is its label.
 pub const PARTS: [&str; 21] = [
     "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
     "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot", "stub", "soil", "stone",
 ];
 
-/// The row of [`PARTS`] of soil.
+/// Row of soil in [`PARTS`].
 pub const PART_OF_SOIL: u8 = 19;
 
-/// The row of [`PARTS`] of stones.
+/// Row of stones in [`PARTS`].
 pub const PART_OF_STONE: u8 = 20;
 
-/// The row of [`PARTS`] of an axis.
+/// Returns the row of an axis in [`PARTS`].
 pub const fn part_of_axis(kind: AxisKind) -> u8 {
     match kind {
         AxisKind::Branch => 0,
@@ -31,7 +31,7 @@ pub(crate) const fn part_is_of_axis(part: u8) -> bool {
     part < 5 || part == part_of_axis(AxisKind::Stub)
 }
 
-/// The row of [`PARTS`] of an organ.
+/// Returns the row of an organ in [`PARTS`].
 pub const fn part_of_organ(kind: OrganKind) -> u8 {
     match kind {
         OrganKind::Leaf => 5,
@@ -50,5 +50,5 @@ pub const fn part_of_organ(kind: OrganKind) -> u8 {
     }
 }
 
-/// No axis, no organ.
+/// Row that means no axis or no organ.
 pub const NOTHING: i32 = -1;

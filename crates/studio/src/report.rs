@@ -22,23 +22,23 @@ pub struct RunReport {
     pub version: String,
     /// The seed of the run.
     pub seed: u64,
-    /// What was read.
+    /// The input.
     pub input: InputReport,
-    /// The program that the export is for, and what was set for it.
+    /// The program that the export is for, and its settings.
     #[serde(rename = "for", default, skip_serializing_if = "Option::is_none")]
     pub engine: Option<EngineReport>,
-    /// One entry for each plant that was made.
+    /// One entry for each plant.
     pub items: Vec<ItemReport>,
     /// Number of plants made.
     pub ok: u64,
     /// Number of inputs that failed.
     pub failed: u64,
-    /// What was wrong with failed inputs, and what concerns the whole run.
+    /// Faults of failed inputs, and warnings about the whole run.
     pub warnings: Vec<String>,
 }
 
 impl RunReport {
-    /// An empty report of a command.
+    /// Makes an empty report of a command.
     pub fn new(command: &str, seed: u64) -> Self {
         Self {
             schema: REPORT_SCHEMA.into(),
@@ -56,15 +56,15 @@ impl RunReport {
 }
 
 /// The program that an export is for.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct EngineReport {
     /// Its word.
     pub name: String,
-    /// The options that were set for it, as they would stand on the command line.
+    /// Settings that were made for it; in a report of the command as options.
     pub set: Vec<String>,
 }
 
-/// What was read.
+/// The input of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InputReport {
     /// The file, or several joined by `, `.
@@ -73,9 +73,13 @@ pub struct InputReport {
     pub drawings: u64,
     /// Strokes in all drawings.
     pub strokes: u64,
-    /// What was taken off the coordinates of clouds far from their origin, in the file's axes, metres: null if nothing.
+    /// Offset subtracted from the coordinates of clouds far from their origin, in the file's axes, metres: null if
+    /// none.
     #[serde(default)]
     pub offset_m: Option<[f64; 3]>,
+    /// The coordinate system of a cloud, as its file names it: null if it names none.
+    #[serde(default)]
+    pub coordinate_system: Option<String>,
 }
 
 /// One plant.
@@ -83,94 +87,95 @@ pub struct InputReport {
 pub struct ItemReport {
     /// Name of the drawing.
     pub name: String,
-    /// The file that was written; empty if none.
+    /// The file written; empty if none.
     pub output: String,
-    /// Every stroke and what became of it.
+    /// Every stroke and its result.
     pub strokes: Vec<StrokeReport>,
     /// Numbers of things.
     pub counts: Counts,
     /// Times of the stages.
     pub timings_ms: TimingsMs,
-    /// How near the model's front view is to the drawing.
+    /// Distance between the model's front view and the drawing.
     pub fidelity: FidelityReport,
     /// Fingerprint of the plant: independent of platform and threads.
     pub digest: String,
-    /// Of a drawing: what it may show, at most three: what it was read as first, then the others, the best first.
+    /// For a drawing: at most three interpretations, the chosen one first, then the others, the best first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub readings: Vec<ReadingReport>,
-    /// What was not as the user might expect.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// What was checked of it: whether a person would accept it. Those that failed are among the warnings.
+    /// Checks of whether a person would accept it. The failed ones are among the warnings.
     #[serde(default)]
     pub checks: Vec<CheckReport>,
-    /// The warnings with their codes, for shells that say them in another language.
+    /// The warnings with their codes, for shells that translate them.
     #[serde(skip)]
     pub told: Vec<Warning>,
-    /// Of a plant with axes: what a botanist would measure on it.
+    /// For a plant with axes: the measures that a botanist would take of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<serde_json::Value>")]
     pub plant: Option<plant::Measures>,
-    /// Of `leaf`: veins, blade and how well they fit.
+    /// For `leaf`: veins, blade and how well they fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leaf: Option<LeafReport>,
-    /// Of `grow`: what growth did.
+    /// For `grow`: figures of the growth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<GrowthReport>,
-    /// Of a plant that was written as a robot: how it is built, and what was assumed of its tissues.
+    /// For a plant that was written as a robot: its structure, and the assumed properties of its tissues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(skip)]
     pub robot: Option<RobotReport>,
-    /// Of a plant that was edited by hand: what became of each edit, in their order.
+    /// For a plant that was edited by hand: the outcome of each edit, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<crate::EditReport>,
-    /// Of `shape --list`: the branches that were asked for.
+    /// For `shape --list`: the branches that were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<serde_json::Value>")]
     pub branches: Vec<crate::BranchRow>,
 }
 
 impl ItemReport {
-    /// With these warnings.
+    /// Returns the entry with these warnings.
     pub(crate) fn warning(self, told: Vec<Warning>) -> Self {
         let told = base::gathered(told);
         Self { warnings: told.iter().map(ToString::to_string).collect(), told, ..self }
     }
 
-    /// With more checks and their warnings.
+    /// Adds checks and their warnings.
     pub fn add_checks(&mut self, report: Report) {
         self.warnings.extend(report.warnings.iter().map(ToString::to_string));
         self.told.extend(report.warnings);
         self.checks.extend(report.checks.iter().map(CheckReport::from));
     }
 
-    /// The first check that makes this no result: one that failed as an error, or if `is_strict` any that failed.
+    /// Returns the first check that rules the result out: one that failed as an error, or if `is_strict` any that
+    /// failed.
     pub fn refusal(&self, is_strict: bool) -> Option<&CheckReport> {
         self.checks.iter().find(|c| !c.ok && (is_strict || c.severity == SeverityWord::Error))
     }
 }
 
-/// A measured value of a plant against what is plausible (`docs/limits.md` has the table).
+/// A measured value of a plant and its plausible bound (`docs/limits.md` has the table).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckReport {
-    /// A word that stays, such as `size-large`.
+    /// A stable word, such as `size-large`.
     pub name: String,
-    /// What was measured.
+    /// The measured value.
     pub value: f64,
-    /// What is plausible.
+    /// The plausible bound.
     pub bound: f64,
-    /// On which side of the bound.
+    /// The plausible side of the bound.
     pub side: SideWord,
     /// Whether the value is plausible.
     pub ok: bool,
-    /// What it means if not.
+    /// Meaning of an implausible value.
     pub severity: SeverityWord,
-    /// What was measured, with its bound, as a sentence.
+    /// The measured value, with its bound, as a sentence.
     pub message: String,
-    /// What to do if it is not plausible.
+    /// Advice for an implausible value.
     pub advice: String,
 }
 
-/// Which side of a bound is plausible.
+/// The plausible side of a bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SideWord {
@@ -180,7 +185,7 @@ pub enum SideWord {
     AtMost,
 }
 
-/// What a check that fails means.
+/// Meaning of a failed check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SeverityWord {
@@ -214,20 +219,20 @@ impl From<&Check> for CheckReport {
 /// One interpretation of a whole drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReadingReport {
-    /// The kind of plant; of several plants of different kinds that of the largest.
+    /// The kind of plant; for several plants of different kinds that of the largest.
     pub kind: Kind,
-    /// How many plants it would show.
+    /// Number of plants in it.
     pub plants: u64,
-    /// How likely it is right, 0 to 1; of several plants their mean.
+    /// Probability that it is right, 0 to 1; for several plants their mean.
     pub score: f64,
 }
 
 impl ReadingReport {
-    /// Most readings that are told.
+    /// Most readings that are reported.
     const MOST: usize = 3;
 
-    /// What a drawing was read as, and what else it may be.
-    pub fn of(reading: &Reading) -> Vec<Self> {
+    /// Returns the chosen reading of a drawing, and the others.
+    pub fn from_reading(reading: &Reading) -> Vec<Self> {
         let plants = reading.plants.len() as u64;
         if let [one] = &reading.plants[..] {
             return one.readings.iter().map(|r| Self { kind: r.kind, plants, score: r.score }).collect();
@@ -255,18 +260,19 @@ impl ReadingReport {
 pub struct StrokeReport {
     /// Its index in the drawing, from 0.
     pub index: u32,
-    /// What it is.
+    /// Its class.
     pub class: String,
-    /// What became of it.
+    /// The organ made of it.
     pub organ: String,
-    /// How sure that class is, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did.
+    /// Confidence in that class, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user
+    /// did.
     pub confidence: f64,
-    /// What decided the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules).
+    /// Source of the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules).
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
 }
 
-/// Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read.
+/// Counts of a plant and its meshes; none where nothing was counted, such as the leaves of a model that was read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Counts {
     /// Flowers.
@@ -318,7 +324,7 @@ pub struct TimingsMs {
     pub structure: f64,
     /// Filling, depth, radii.
     pub depth: f64,
-    /// Measuring how true the plant is to its drawing.
+    /// Measuring the fidelity of the plant to its drawing.
     #[serde(default)]
     pub fidelity: f64,
     /// Skinning.
@@ -331,13 +337,13 @@ pub struct TimingsMs {
     pub picture: f64,
     /// Writing the model.
     pub write: f64,
-    /// From the command's start to its last file but the report: reading, computing, pictures and writing. Of a batch:
-    /// from the drawing's reading to its last file.
+    /// From the command's start to its last file but the report: reading, computing, pictures and writing. In a batch:
+    /// from reading the drawing to its last file.
     pub total: f64,
 }
 
 impl TimingsMs {
-    /// The stages of a report; stages of other names are left out of the fields but not of the total.
+    /// Collects the stages of a report; stages of other names are left out of the fields but not of the total.
     pub fn from_report(report: &Report) -> Self {
         let of = |name| report.stages.iter().find(|s| s.name == name).map_or(0.0, |s| s.ms);
         Self {
@@ -355,7 +361,7 @@ impl TimingsMs {
         }
     }
 
-    /// Adds what the shell measured itself.
+    /// Adds the times that the shell measured.
     pub fn add_io(&mut self, read_ms: f64, write_ms: f64) {
         self.read += read_ms;
         self.write += write_ms;
@@ -363,24 +369,24 @@ impl TimingsMs {
     }
 }
 
-/// The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. Null:
-/// nothing of that sort to compare.
+/// Comparison of the model's front view with the drawing, measured both ways; distances are shares of the drawing's
+/// diagonal. Null: nothing of that sort to compare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FidelityReport {
     /// Mean distance from the drawn lines to the model's lines and outlines.
     pub reprojection_mean: Option<f64>,
-    /// 95 % of the drawn lines are nearer than this.
+    /// Distance within which 95 % of the drawn lines lie.
     pub reprojection_p95: Option<f64>,
-    /// Mean distance from the model's axes and outlines to the ink: what the model shows and nobody drew.
+    /// Mean distance from the model's axes and outlines to the ink: parts that the model shows and nobody drew.
     #[serde(default)]
     pub excess_mean: Option<f64>,
-    /// 95 % of the model's axes and outlines are nearer than this.
+    /// Distance within which 95 % of the model's axes and outlines lie.
     #[serde(default)]
     pub excess_p95: Option<f64>,
-    /// The area that filled contours (crowns, clusters) share with what grew in them, over the area of either, 0 to 1.
+    /// The area that filled contours (crowns, clusters) share with their filling, over the area of their union, 0 to 1.
     #[serde(default)]
     pub overlap: Option<f64>,
-    /// The share of the drawing's ink that was measured, by length, 0 to 1: strokes that were left out were not.
+    /// The measured share of the drawing's ink, by length, 0 to 1: strokes that were left out were not measured.
     #[serde(default)]
     pub compared: Option<f64>,
 }
@@ -413,27 +419,27 @@ pub struct LeafReport {
     pub veins: FaceCounts,
     /// The blade's mesh; faces are quads.
     pub blade: FaceCounts,
-    /// Distances of what was measured from the blade.
+    /// Distances of the measured points from the blade.
     pub fit_error: LeafFit,
-    /// The farthest that a vein's centre line is from the blade, millimetres.
+    /// Largest distance of a vein's centre line from the blade, millimetres.
     pub vein_gap_mm: Option<f64>,
     /// Rings whose ball is inside its neighbours; none for plain rings.
     pub swallowed_rings: Option<u64>,
-    /// Rings at which a vein is thicker than it bends.
+    /// Rings at which the vein's radius exceeds its radius of curvature.
     pub crossing_rings: Option<u64>,
-    /// Of a scan: what was found in it.
+    /// For a scan: its findings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<ScanReport>,
 }
 
-/// What was found in a scan.
+/// Findings of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScanReport {
-    /// Points read, without those that are no numbers.
+    /// Points read, without those that are not numbers.
     pub points: u64,
     /// Points left out because their neighbours are far.
     pub outliers: u64,
-    /// Share of the blade that has a point within 2 mm; the rest are holes that were bridged.
+    /// Share of the blade that has a point within 2 mm; the rest are bridged holes.
     pub covered: f64,
     /// Length of the stalk, millimetres; none if there is no stalk.
     pub stalk_mm: Option<f64>,
@@ -452,22 +458,22 @@ pub struct FaceCounts {
     pub faces: u64,
 }
 
-/// How far measured points are from the blade, millimetres.
+/// Distances of measured points from the blade, millimetres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LeafFit {
     /// Root of the mean square.
     pub rms_mm: f64,
-    /// 95 of 100 points are nearer.
+    /// Distance within which 95 of 100 points lie.
     pub p95_mm: f64,
-    /// The farthest.
+    /// Largest distance.
     pub max_mm: f64,
     /// Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through.
     pub explained: f64,
 }
 
 impl LeafFit {
-    /// From distances in metres; a point is explained up to 2 mm.
-    pub fn of(distances: &[f64]) -> Self {
+    /// Computes the fit from distances in metres; a point is explained up to 2 mm.
+    pub fn from_distances(distances: &[f64]) -> Self {
         let mut sorted: Vec<f64> = distances.iter().map(|d| d * 1e3).collect();
         base::sort_numbers(&mut sorted);
         let n = sorted.len();
@@ -487,9 +493,9 @@ pub struct GrowthReport {
     pub method: String,
     /// Attraction points or markers of all cycles.
     pub attractors: u64,
-    /// Of these, consumed.
+    /// Number of these consumed.
     pub consumed: u64,
-    /// Of these, never reached.
+    /// Number of these never reached.
     pub unreachable: u64,
     /// Rounds, years or rewriting steps.
     pub iterations: u64,
@@ -501,30 +507,30 @@ pub struct GrowthReport {
     pub leaves_placed: u64,
     /// Leaves on the tree.
     pub leaves_kept: u64,
-    /// Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where
-    /// there is no obstacle, or nothing was measured.
+    /// Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none without
+    /// an obstacle, or without a measurement.
     pub inside_obstacle: Option<u64>,
-    /// How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above.
+    /// Depth of the deepest vertex inside an obstacle, metres; 0 if there is none inside; none as above.
     #[serde(default)]
     pub inside_obstacle_depth_m: Option<f64>,
 }
 
-/// The part of a report about a robot: how it is built, and what was assumed of its tissues.
+/// The part of a report about a robot: its structure, and the assumed properties of its tissues.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotReport {
-    /// Rigid bodies, with fruits that can break off.
+    /// Rigid bodies, including fruits that can break off.
     pub bodies: u64,
-    /// Hinges: two a joint.
+    /// Hinges: two for each joint.
     pub hinges: u64,
     /// Fruits that can break off.
     pub breakable_fruits: u64,
-    /// Kilograms of all bodies.
+    /// Mass of all bodies, kilograms.
     pub mass_kg: f64,
-    /// The lowest frequency at which it swings, hertz; 0 of a plant without joints.
+    /// The lowest frequency at which it swings, hertz; 0 for a plant without joints.
     pub lowest_hz: f64,
-    /// The longest time step that simulates it well, seconds.
+    /// The longest time step for a sound simulation, seconds.
     pub time_step_s: f64,
-    /// Whose wood it was taken for: `hardwood`, `softwood` or `green`. None of it is measured.
+    /// Assumed wood: `hardwood`, `softwood` or `green`. None of it is measured.
     pub wood: String,
     /// Young's modulus of that wood, pascals.
     pub modulus_pa: f64,

@@ -1,4 +1,4 @@
-//! A plant as a robot: bodies, joints and the meshes that are seen of them.
+//! A plant as a robot: bodies, joints and their visible meshes.
 //!
 //! `Plant -> mechanics::Mechanism; Plant -> skin -> triangles of each body -> formats::robot_files`
 
@@ -16,7 +16,7 @@ use crate::PRESETS;
 use crate::report::RobotReport;
 use crate::survey::triangle_labels;
 
-/// Why a plant cannot be written as a robot.
+/// Reason why a plant cannot be written as a robot.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RobotError {
@@ -31,22 +31,23 @@ pub enum RobotError {
     Write(#[from] WriteError),
 }
 
-/// Fineness of the meshes that are seen, over that of models: simulators draw them, and nothing is computed with them.
+/// Fineness of the visible meshes, relative to that of models: simulators draw them but compute nothing with them.
 const SEEN_DETAIL: f64 = 0.5;
 
-/// Woody plants that are no hardwood: their trunks are fibres in soft tissue, whose stiffness differs from species to species.
+/// Woody plants that are not hardwoods: their trunks are fibres in soft tissue, whose stiffness differs between
+/// species.
 const NO_HARDWOOD: [&str; 4] = ["Coconut palm", "Date palm", "Tree fern", "Saguaro"];
 
 /// A plant as a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
-    /// Its own file and the meshes beside it.
+    /// Its own file and its mesh files.
     pub files: ModelFiles,
-    /// How it is built, and what was assumed of its tissues.
+    /// Its structure, and the assumed properties of its tissues.
     pub report: RobotReport,
 }
 
-/// How a robot is built, and what was assumed of its tissues.
+/// Returns the report of a mechanism and of its wood.
 fn reported(mechanism: &Mechanism, group: WoodGroup) -> RobotReport {
     let tissue = group.tissue();
     RobotReport {
@@ -63,11 +64,11 @@ fn reported(mechanism: &Mechanism, group: WoodGroup) -> RobotReport {
     }
 }
 
-/// Writes a plant as a robot, with its meshes beside it: see [`articulate`] and [`robot_files`]. `stem`: the file's name without
-/// its ending.
+/// Writes a plant as a robot, with its meshes in separate files: see [`articulate`] and [`robot_files`]. `stem`: the
+/// file's name without its ending.
 ///
-/// Guaranteed: the same bits for any executor. Warned of in `report`: wood whose kind nothing in the plant says, and what
-/// [`articulate`] warns of. Cost: that of [`skin::skin`] at half its fineness.
+/// Guaranteed: the same bits for any executor. `report` warns of wood whose kind is unknown, and of what [`articulate`]
+/// warns of. Cost: that of [`skin::skin`] at half its fineness.
 ///
 /// # Errors
 /// [`RobotError`] of a plant without stems or thickness, or beyond the budget.
@@ -107,7 +108,8 @@ pub fn write_robot(
     Ok(Robot { files, report: reported(&mechanism, spec.group) })
 }
 
-/// Whether a plant is taken for a hardwood for want of better: it is no species that comes with Burgeon, or one without true wood.
+/// Whether a plant is taken for a hardwood by default: it is not a species that comes with Burgeon, or has no true
+/// wood.
 fn is_wood_guessed(plant: &Plant, group: WoodGroup) -> bool {
     let name = plant.name.trim();
     let is = |other: &str| other.eq_ignore_ascii_case(name);
@@ -115,7 +117,7 @@ fn is_wood_guessed(plant: &Plant, group: WoodGroup) -> bool {
     group == WoodGroup::Hardwood && (!is_known() || NO_HARDWOOD.into_iter().any(is))
 }
 
-/// The triangles of each body by kind of surface, in the order of the bodies.
+/// Returns the triangles of each body by kind of surface, in the order of the bodies.
 fn body_meshes(plant: &Plant, mechanism: &Mechanism, run: &Run<'_>) -> Result<Vec<BodyMesh>, Stopped> {
     let spec = SkinSpec { textures: false, detail: SEEN_DETAIL, ..SkinSpec::default() };
     let (model, layout) = skin::skin_laid_out(plant, &spec, skin::SurfacePictures::default(), None, run)?;
@@ -130,7 +132,7 @@ fn body_meshes(plant: &Plant, mechanism: &Mechanism, run: &Run<'_>) -> Result<Ve
     Ok(sorted.into_iter().map(|((body, row), triangles)| taken(&model, row, &triangles, body)).collect())
 }
 
-/// The body of a triangle by what it lies on: an axis or an organ; that on the ground for neither.
+/// Returns the body of a triangle by its axis or organ; that on the ground for neither.
 fn body_of(
     (plant, mechanism): (&Plant, &Mechanism),
     [_, axis, organ]: [i32; 3],
@@ -147,7 +149,7 @@ fn middle(mesh: &TriMesh, corners: [u32; 3]) -> DVec3 {
     corners.into_iter().map(corner).sum::<DVec3>() / 3.0
 }
 
-/// Some triangles of a part as a mesh of their own, with their mean colour.
+/// Returns some triangles of a part as a mesh of their own, with their mean colour.
 fn taken(model: &Model, row: usize, triangles: &[u32], body: usize) -> BodyMesh {
     let Part { name, material, mesh } = &model.parts[row];
     let mut rows: BTreeMap<u32, u32> = BTreeMap::new();

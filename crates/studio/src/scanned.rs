@@ -15,13 +15,13 @@ use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
 
-/// Distances from the leaf that was found beyond this share of its length are told: a leaf that is torn and folded has 0.03.
+/// Distance from the leaf, as a share of its length, beyond which points are reported: a torn and folded leaf has 0.03.
 const UNLIKE: f64 = 0.06;
 
-/// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud, in the colours of the
-/// cloud where it has some.
+/// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud, in the colours
+/// of the cloud where it has some.
 ///
-/// A table below it and things that stand apart from it are left out, with a warning.
+/// A table below it and separate things are left out, with a warning.
 ///
 /// # Errors
 /// [`LeafError::Scan`]; [`LeafError::Several`] for a plant or a leaf of leaflets.
@@ -41,7 +41,7 @@ pub fn make_leaf_from_scan(
     }
     let found = report.stage("structure", run.clock, |r| leaf::fit_scan(points, spec, run, r))?;
     let line = found.midrib();
-    let rms_mm = LeafFit::of(&found.distances).rms_mm;
+    let rms_mm = LeafFit::from_distances(&found.distances).rms_mm;
     if rms_mm > UNLIKE * 1e3 * geom::polyline_length3(&line) {
         base::warn!(
             report,
@@ -77,7 +77,7 @@ pub fn make_leaf_from_scan(
         area_mm2: 1e6 * blade.area(),
         veins: FaceCounts { vertices: veins.positions.len() as u64, faces: veins.triangles.len() as u64 },
         blade: FaceCounts { vertices: blade.positions.len() as u64, faces: mesh.blade_faces as u64 },
-        fit_error: LeafFit { explained: found.explained, ..LeafFit::of(&found.distances) },
+        fit_error: LeafFit { explained: found.explained, ..LeafFit::from_distances(&found.distances) },
         scan: Some(ScanReport {
             points: (found.used + found.outliers) as u64,
             outliers: found.outliers as u64,
@@ -93,7 +93,7 @@ pub fn make_leaf_from_scan(
     Ok((made, found))
 }
 
-/// The cloud without a table and without what stands apart; `None` if it has neither.
+/// Returns the cloud without a table and without separate things; `None` if it has neither.
 fn alone(cloud: &PointCloud, report: &mut Report) -> Option<PointCloud> {
     let above = bloom::on_table(&cloud.points, Seed::new(1)).map(|rows| cloud.select(&rows));
     if let Some(above) = &above {
@@ -118,17 +118,17 @@ fn alone(cloud: &PointCloud, report: &mut Report) -> Option<PointCloud> {
     one.or(above)
 }
 
-/// Colours of points, if there is one a point and they show something.
+/// Returns the colours of points, if there is one for each point and they are not all black.
 pub(crate) fn colours_of(points: &[DVec3], colors: &[[u8; 3]], run: &Run<'_>) -> Option<CloudColours> {
     (points.len() == colors.len()).then(|| CloudColours::new(points, colors, run.executor)).flatten()
 }
 
-/// What a blade of a scan is painted with: a texture has its own colours.
+/// Returns the paint of a blade of a scan: a texture has its own colours.
 pub(crate) fn painted(sheet: &Sheet, options: &LeafOptions) -> Paint {
     if sheet.form.is_some() { Paint::Natural([1.0; 3]) } else { options.paint([1.0; 3]) }
 }
 
-/// The blade that was found, where it stands in the scan; with colours its texture is added to `textures`.
+/// Returns the blade that was found, in its place in the scan; with colours, its texture is added to `textures`.
 pub(crate) fn sheet_of(
     found: &ScanLeaf,
     colours: Option<&CloudColours>,
@@ -153,7 +153,7 @@ pub(crate) fn sheet_of(
     Ok(sheet)
 }
 
-/// The midrib, thinner towards the tip; how thick it is only a stalk tells.
+/// Returns the midrib, thinner towards the tip; its thickness is known only from a stalk.
 fn midrib(found: &ScanLeaf, line: &[DVec3]) -> Result<Vein, SplineError> {
     let base = found.marks.rows.last().and_then(|r| r.midrib).unwrap_or(0.001) * 0.5;
     let last = (line.len() - 1).max(1) as f64;
@@ -164,7 +164,7 @@ fn midrib(found: &ScanLeaf, line: &[DVec3]) -> Result<Vein, SplineError> {
     Ok(Vein { curve, marks })
 }
 
-/// The stalk as an axis from its lower end to the blade; its last node.
+/// Adds the stalk as an axis from its lower end to the blade; returns its last node.
 fn add_stalk(plant: &mut Plant, stalk: &BallBSpline, colours: Option<&CloudColours>) -> Option<NodeId> {
     let balls: Vec<Ball> = evenly(stalk, 40).into_iter().rev().map(|t| stalk.ball(t)).collect();
     let points: Vec<DVec3> = balls.iter().map(|b| b.centre).collect();

@@ -1,6 +1,6 @@
-//! A scene of plants -> a model each, made again only where something changed.
+//! A scene of plants -> one model for each, made again only where something changed.
 //!
-//! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
+//! `Document -> SceneEvaluator (one evaluator for each plant) -> models, reports | scene_model -> one model`
 
 mod error;
 
@@ -17,7 +17,7 @@ use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, Rays, ThicknessRule};
-use mesh::{Copies, MaterialId, Model, Standing};
+use mesh::{Copies, CopyPlace, MaterialId, Model, Standing};
 use plant::{AxisId, Plant};
 use skin::{FoliageStyle, Layout, SkinSpec, Worn};
 
@@ -34,24 +34,24 @@ use crate::template::LeafTemplate;
 use crate::trees::{TreeEvaluator, TreeOptions};
 use crate::venation::make_ray_leaf;
 
-/// What was made of one plant.
+/// Results of one plant.
 #[derive(Clone, Copy, Debug)]
 pub struct ScenePlant<'a> {
     name: &'a str,
     item: &'a ItemReport,
     /// The meshes, in the plant's own coordinates.
     pub model: &'a Model,
-    /// The plant; none after an update that was stopped on the way.
+    /// The plant; `None` after an update that was stopped.
     pub plant: Option<&'a Plant>,
-    /// What of the plant lies where in the model, for plants of which a branch can be moved alone.
+    /// Places of the plant's parts in the model, for plants of which a branch can be moved alone.
     pub layout: Option<&'a Layout>,
-    /// What of the plant lies where in the model, of any plant.
+    /// Places of the plant's parts in the model, for any plant.
     pub owners: Option<&'a Layout>,
-    /// How a drawing lies in the front view.
+    /// Placement of a drawing in the front view.
     pub front: Option<FrontView>,
-    /// The name of the model within the evaluator: copies that share one have the same number, others never.
+    /// Number of the model within the evaluator: shared by copies that share a model, and otherwise unique.
     pub revision: u64,
-    /// What the last update did again.
+    /// Stages that the last update recomputed.
     pub stages: &'a [&'static str],
 }
 
@@ -60,19 +60,20 @@ pub struct ScenePlant<'a> {
 pub struct PlantLevel {
     /// Its meshes.
     pub model: Model,
-    /// The coarser plant, and what of it lies where in them.
+    /// The coarser plant, and the places of its parts in the meshes.
     laid_out: Option<(Plant, Layout)>,
 }
 
 impl PlantLevel {
-    /// The model without leaves that are one form, and these ([`skin::copies`]). None where it is not known what lies where.
+    /// Returns the model without leaves of one form, and these ([`skin::copies`]). `None` where the places of the parts
+    /// are unknown.
     pub fn copies(&self) -> Option<(Model, Vec<Copies>)> {
         let (plant, layout) = self.laid_out.as_ref()?;
         Some(skin::copies(plant, &self.model, layout))
     }
 
-    /// The triangles of a branch of `plant`, which this is a level of, and of all that it bears, as
-    /// [`Layout::branch`] has them. None where that is not known, or the branch is too fine for the level.
+    /// Returns the triangles of a branch of `plant`, which this is a level of, and of all that it bears, in the form of
+    /// [`Layout::branch`]. `None` where they are unknown, or the branch is too fine for the level.
     pub fn branch(&self, plant: &Plant, axis: AxisId) -> Option<Vec<Vec<Range<u32>>>> {
         let (coarse, layout) = self.laid_out.as_ref()?;
         let wanted = plant.axes.get(axis.index())?;
@@ -87,17 +88,17 @@ impl PlantLevel {
 }
 
 impl ScenePlant<'_> {
-    /// The entry of the report.
+    /// Returns the entry of the report.
     pub fn report(&self) -> ItemReport {
         ItemReport { name: self.name.to_owned(), ..self.item.clone() }
     }
 }
 
-/// Makes the plants of a document that changes; each keeps what its last change did not touch.
+/// Makes the plants of a document that changes; each keeps the results that its last change did not affect.
 ///
-/// Guaranteed: the same result as from a fresh evaluator; after an error the last result of the plant stays. Where a
-/// plant stands, its name's place in lists and whether it is hidden do not make it anew. Plants of the same maker, seed
-/// and edits are made once and share the result until one of them changes; a tree's name is no matter for it.
+/// Guaranteed: the same result as from a fresh evaluator; after an error the last result of the plant stays. The place
+/// of a plant, its position in lists and whether it is hidden do not cause an update. Plants of the same maker, seed
+/// and edits are made once and share the result until one of them changes; the name of a tree does not matter for this.
 ///
 /// ```
 /// use burgeon::document::{Editor, FlowerMaker, Maker, NewPlant, SceneCommand, Settings};
@@ -118,31 +119,31 @@ pub struct SceneEvaluator {
     previewing: bool,
     later: bool,
     plants: base::LiteMap<PlantId, Kept>,
-    /// The last number that was given to a model.
+    /// The last number that a model was given.
     revision: u64,
 }
 
-/// What is kept of one plant.
+/// State kept for one plant.
 #[derive(Clone, Debug, Default)]
 struct Kept {
     name: String,
-    /// Shared with copies.
+    /// Results, shared with copies.
     made: Arc<Made>,
-    /// What the last update did again.
+    /// Stages that the last update recomputed.
     done: Vec<&'static str>,
 }
 
-/// What a result is made from.
+/// Inputs of a result.
 #[derive(Clone, Debug, PartialEq)]
 struct MadeFrom {
     maker: Maker,
     seed: Seed,
-    /// Goes into plants and models of all but trees, which are named by their spec.
+    /// Name in plants and models of all makers but trees, which are named by their spec.
     name: String,
     leaf: Option<LeafTemplate>,
     edits: Vec<PlantEdit>,
     strokes: Vec<(Arc<Stroke>, [Option<StrokeClass>; 2])>,
-    /// Names of layers that are hidden.
+    /// Names of hidden layers.
     hidden: Vec<Arc<str>>,
     worn: Worn,
     wind: bool,
@@ -150,7 +151,7 @@ struct MadeFrom {
 }
 
 impl MadeFrom {
-    fn of(
+    fn from_plant(
         plant: &DocumentPlant,
         leaf: Option<LeafTemplate>,
         (wind, foliage): (bool, Option<FoliageStyle>),
@@ -192,21 +193,21 @@ impl MadeFrom {
 struct Made {
     /// The word of its maker.
     maker: &'static str,
-    /// What the result was made from; none after an update that was stopped half-way.
+    /// Inputs of the result; `None` after an update that was stopped half-way.
     from: Option<MadeFrom>,
     sketch: Evaluator,
     tree: TreeEvaluator,
     opening: Option<OpeningPlant>,
-    /// The day to which a sketch's flowers were opened last.
+    /// The day to which a sketch's flowers were last opened.
     day: Option<f64>,
     item: ItemReport,
-    /// Of leaves and flowers, and of sketches whose flowers open.
+    /// Model of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
-    /// What lies where in it.
+    /// Places of the plant's parts in the model.
     layout: Option<Layout>,
-    /// Of leaves, flowers and sketches whose flowers open.
+    /// Plant of leaves, flowers and sketches whose flowers open.
     plant: Option<Plant>,
-    /// How leaves and flowers are meshed.
+    /// Skin settings of leaves and flowers.
     skin: SkinSpec,
     lent: Option<LeafTemplate>,
     revision: u64,
@@ -215,14 +216,14 @@ struct Made {
 }
 
 impl Kept {
-    /// What a plant is made with, and whether it was left half-way the last time.
+    /// Returns the results to update, and whether the last update was left half-way.
     ///
-    /// Until an update has succeeded it is no result, not even of what was before.
+    /// Until an update has succeeded, they are no result, not even the previous one.
     fn begin(&mut self, plant: &DocumentPlant, (previewing, later): (bool, bool)) -> (&mut Made, bool) {
         let word = plant.settings().maker.word();
         let made = Arc::make_mut(&mut self.made);
         if made.maker != word {
-            // Of a document in which this number was another plant's.
+            // In the previous document this number belonged to another plant.
             *made = Made { maker: word, ..Made::default() };
         }
         (made.sketch.previewing, made.tree.previewing) = (previewing, previewing);
@@ -233,29 +234,29 @@ impl Kept {
 }
 
 impl SceneEvaluator {
-    /// Whether models say how wind moves them, from the next update on. Default: no.
+    /// Sets whether models have wind columns, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
         self.wind = wind;
     }
 
-    /// How the leaves of all plants are drawn, from the next update on. Default: as each plant has it.
+    /// Sets how the leaves of all plants are drawn, from the next update on. Default: as each plant has it.
     pub fn set_foliage(&mut self, foliage: Option<FoliageStyle>) {
         self.foliage = foliage;
     }
 
-    /// Whether updates are previews while somebody shapes: reports of trees and drawings then have no digest, which is a
-    /// third of what a large tree's meshes take. Default: no.
+    /// Sets whether updates are previews while somebody shapes: reports of trees and drawings then have no digest,
+    /// which takes a third of the time of a large tree's meshes. Default: no.
     pub fn set_previewing(&mut self, previewing: bool) {
         self.previewing = previewing;
     }
 
-    /// Whether reports are left without what takes as long as the plant until [`Self::measure`] is asked: how true a plant is to
-    /// a drawing of very many strokes, and the digest and the measures of a flower. Default: no.
+    /// Sets whether reports omit what takes as long as the plant until [`Self::measure`] is called: the fidelity of a
+    /// plant to a drawing of very many strokes, and the digest and the measures of a flower. Default: no.
     pub fn set_measuring_later(&mut self, later: bool) {
         self.later = later;
     }
 
-    /// Puts into the report of a plant what an update left for later. Whether there was something.
+    /// Adds to the report of a plant what an update left for later. Returns whether there was anything.
     ///
     /// # Errors
     /// [`Cancelled`]; it is still left for later then.
@@ -278,7 +279,7 @@ impl SceneEvaluator {
         Ok(found.is_some())
     }
 
-    /// Completes the report of a flower, for all copies that share it: they go on sharing it.
+    /// Completes the report of a flower, for all copies, which continue to share it.
     fn tell(&mut self, untold: Arc<Made>) {
         let copies: Vec<PlantId> =
             self.plants.iter().filter(|(_, k)| Arc::ptr_eq(&k.made, &untold)).map(|(id, _)| *id).collect();
@@ -294,17 +295,17 @@ impl SceneEvaluator {
         }
     }
 
-    /// Brings one plant up to date; those whose leaf it bears too.
+    /// Updates one plant, and the plant whose leaf it bears.
     ///
     /// # Errors
-    /// [`SceneError`]; a plant that is not in the document is left as it was.
+    /// [`SceneError`]; a plant that is not in the document is left unchanged.
     pub fn update(&mut self, id: PlantId, document: &Document, run: &Run<'_>) -> Result<(), SceneError> {
         let Some(plant) = document.plant(id) else { return Ok(()) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(()) };
         let (next, kept) = (self.revision + 1, self.plants.entry(id).or_default());
         let (made, anew) = kept.begin(plant, (self.previewing, self.later));
         let done = made.update(plant, from, anew, run)?;
-        // A drawing in which nothing changed but how its photograph shows keeps its model.
+        // A drawing in which only the opacity of its photograph changed keeps its model.
         if !done.is_empty() {
             made.revision = next;
             self.revision = next;
@@ -313,11 +314,11 @@ impl SceneEvaluator {
         Ok(())
     }
 
-    /// A much coarser model, without textures, of what [`Self::update`] will make of a plant: of large trees that have to be
-    /// grown, because the whole takes a while. It is no result: nothing but the page ever sees it.
+    /// Returns a much coarser model, without textures, of the plant that [`Self::update`] will make: for large trees
+    /// that have to be grown, which takes a while. It is not a result: nothing but the page ever sees it.
     ///
     /// # Errors
-    /// [`SceneError`]; there is none of a plant that is not in the document.
+    /// [`SceneError`]; `None` for a plant that is not in the document.
     pub fn preview(
         &mut self,
         id: PlantId,
@@ -331,7 +332,7 @@ impl SceneEvaluator {
         Ok(made.tree.preview(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
     }
 
-    /// What a plant is to be made from; none where it is made, of itself or of one like it.
+    /// Returns the inputs of a plant; `None` where it is already made, itself or as one like it.
     fn wanted(
         &mut self,
         plant: &DocumentPlant,
@@ -344,7 +345,7 @@ impl SceneEvaluator {
             None => None,
         };
         let previewing = self.previewing;
-        let from = MadeFrom::of(plant, leaf, (self.wind, self.foliage));
+        let from = MadeFrom::from_plant(plant, leaf, (self.wind, self.foliage));
         let is_it = |k: &Kept| {
             let whole = previewing || !k.made.item.digest.is_empty() || k.made.is_untold();
             k.made.from.as_ref() == Some(&from) && whole
@@ -362,7 +363,7 @@ impl SceneEvaluator {
         Ok((!known).then_some(from))
     }
 
-    /// The leaf that a plant lends.
+    /// Returns the leaf that a plant lends.
     fn template(
         &mut self,
         lender: PlantId,
@@ -371,7 +372,7 @@ impl SceneEvaluator {
     ) -> Result<Option<LeafTemplate>, SceneError> {
         let Some(plant) = document.plant(lender) else { return Ok(None) };
         let none = || SceneError::Lender(plant.settings().name.clone());
-        // A lender bears its own leaf, so this goes one level down.
+        // A lender bears its own leaf, so this recurses only one level.
         self.update(lender, document, run).map_err(|e| if e.is_bare() { none() } else { e })?;
         let Some(kept) = self.plants.get_mut(&lender) else { return Ok(None) };
         let made = &mut kept.made;
@@ -391,26 +392,26 @@ impl SceneEvaluator {
                 Some(lent)
             }
             Maker::Leaf(_) => made.lent.clone(),
-            // As it was drawn: a hand may have taken all leaves away.
+            // The leaf as it was drawn: hand edits may have removed all leaves.
             _ => made.sketch.drawn().and_then(LeafTemplate::of_plant),
         };
         lent.map(Some).ok_or_else(none)
     }
 
-    /// What is kept of plants and of those whose leaves they bear, to try something with.
+    /// Copies the state of plants and of those whose leaves they bear, for trials.
     pub fn aside<'a>(&self, plants: impl IntoIterator<Item = &'a DocumentPlant>) -> Self {
         let wanted = plants.into_iter().flat_map(|p| [Some(p.id()), p.settings().maker.leaf()]);
         let kept = wanted.flatten().filter_map(|id| Some((id, self.plants.get(&id)?.clone())));
         Self { plants: base::map_of(kept), ..*self }
     }
 
-    /// Forgets a plant: it is made from the beginning when it is asked for again.
+    /// Drops the state of a plant: it is made from the beginning when it is next requested.
     pub fn forget(&mut self, id: PlantId) {
         self.plants.remove(&id);
     }
 
-    /// The plants of which something is kept, and about how many bytes: meshes, textures, and the plant in the stages in
-    /// which it is kept for the next change. What copies share counts for the first of them.
+    /// Returns the plants with kept results, and roughly how many bytes these take: meshes, textures, and the plant in
+    /// the stages kept for the next change. Shared results count for the first of the copies.
     pub fn kept(&self) -> impl Iterator<Item = (PlantId, usize)> + '_ {
         let mut counted = base::Set::new();
         self.plants.iter().map(move |(&id, kept)| {
@@ -419,12 +420,12 @@ impl SceneEvaluator {
         })
     }
 
-    /// What makes the plant, of a sketch.
+    /// Returns the evaluator of a sketch.
     pub fn evaluator(&self, id: PlantId) -> Option<&Evaluator> {
         self.plants.get(&id).map(|kept| &kept.made.sketch)
     }
 
-    /// The last result of a plant.
+    /// Returns the last result of a plant.
     pub fn get(&self, id: PlantId) -> Option<ScenePlant<'_>> {
         let Kept { name, made, done } = self.plants.get(&id)?;
         Some(ScenePlant {
@@ -444,9 +445,9 @@ impl SceneEvaluator {
         })
     }
 
-    /// A coarser copy of a plant's last result for level `level` (1 to 6; 0 is the result itself), with the materials of
-    /// the finest. Plants of hundreds of leaves or axes lose leaves and twigs, others only triangles: at least a half with
-    /// each level.
+    /// Returns a coarser copy of a plant's last result for level `level` (1 to 6; 0 is the result itself), with the
+    /// materials of the finest. Plants of hundreds of leaves or axes lose leaves and twigs, others only triangles: at
+    /// least a half with each level.
     ///
     /// # Errors
     /// [`SceneError`]; [`SceneError::NotMade`] for a plant without a result.
@@ -454,7 +455,7 @@ impl SceneEvaluator {
         Ok(self.level(plant, level, run)?.model)
     }
 
-    /// Coarser copies of a plant's last result and the like.
+    /// Returns coarser copies of a plant's last result and the other levels of `spec`.
     ///
     /// # Errors
     /// As [`Self::at_level`].
@@ -474,7 +475,8 @@ impl SceneEvaluator {
         Levels::new(spec, (shown.model, whole, layout), at, run)
     }
 
-    /// As [`Self::at_level`], also with what lies where in the model, where that is known.
+    /// Returns a level as [`Self::at_level`] does, and the places of the plant's parts in the model, where they are
+    /// known.
     ///
     /// # Errors
     /// As [`Self::at_level`].
@@ -505,7 +507,7 @@ impl SceneEvaluator {
         }
     }
 
-    /// The days of a plant whose flowers open: bud to full bloom, and from there to wilted.
+    /// Returns the days of a plant whose flowers open: from bud to full bloom, and from there to wilted.
     pub fn days(&self, id: PlantId, document: &Document) -> Option<[f64; 2]> {
         match &document.plant(id)?.settings().maker {
             Maker::Sketch(_) => self.plants.get(&id)?.made.opening.as_ref().map(|o| o.days),
@@ -516,14 +518,14 @@ impl SceneEvaluator {
 }
 
 impl Made {
-    /// A flower whose report is not complete.
+    /// Whether it is a flower whose report is incomplete.
     fn is_untold(&self) -> bool {
         let flower = matches!(self.from.as_ref().map(|f| &f.maker), Some(Maker::Flower(_)));
         self.later && flower && self.item.digest.is_empty()
     }
 
     fn bytes(&self) -> usize {
-        // As grown, dressed, and twice on the way through the edits by hand.
+        // As grown, with its look, and twice in the course of the hand edits.
         const STAGES: usize = 4;
         let models = [self.model.as_ref(), self.sketch.model(), self.tree.model()];
         let plants = [self.sketch.plant(), self.tree.plant()];
@@ -535,7 +537,8 @@ impl Made {
             + STAGES * plants.into_iter().flatten().map(plant).sum::<usize>()
     }
 
-    /// Makes the plant; what of it was done again. `anew`: the last update was stopped, or there was none.
+    /// Makes the plant and returns the stages that were recomputed. `anew`: the last update was stopped, or there was
+    /// none.
     fn update(
         &mut self,
         plant: &DocumentPlant,
@@ -572,7 +575,7 @@ impl Made {
         if changed {
             self.opening = None;
         }
-        // Times are those of the last change that touched the plant.
+        // Times are those of the last change that affected the plant.
         if changed || anew || self.item.digest.is_empty() {
             self.item = item;
         }
@@ -584,7 +587,7 @@ impl Made {
                     self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
                 }
                 if let Some(opening) = self.opening.as_mut().filter(|_| changed || opened) {
-                    let open = opening.at(day, &opening.law(), from.seed, run)?;
+                    let open = opening.make_on_day(day, &opening.law(), from.seed, run)?;
                     (self.plant, self.model) = (Some(open.plant), Some(open.model));
                     self.layout = Some(open.layout);
                 }
@@ -652,13 +655,13 @@ impl Made {
     }
 }
 
-/// The spec of a tree of a document, with its obstacles.
+/// Returns the spec of a tree of a document, with its obstacles.
 pub fn tree_spec(tree: &TreeSettings) -> TreeSpec {
     let obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
     TreeSpec { obstacles, ..(*tree.spec).clone() }
 }
 
-/// What a tree of a document is, from a spec: its obstacles get names.
+/// Returns the settings of a tree of a document from a spec: its obstacles get names.
 pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
     let obstacles = spec.obstacles.iter().enumerate().map(|(k, shape)| document::NamedObstacle {
         name: format!("obstacle {}", k + 1),
@@ -674,7 +677,7 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
     }
 }
 
-/// What was measured of a leaf.
+/// Measurements of a leaf.
 pub(crate) enum LeafInput {
     /// Marks along its midrib, veins and margins.
     Marks(FullMarks),
@@ -682,7 +685,7 @@ pub(crate) enum LeafInput {
     Rays(Rays),
 }
 
-/// What was measured of a leaf of a document, and how it is made.
+/// Returns the measurements of a leaf of a document, and the options for making it.
 pub(crate) fn leaf_input(leaf: &LeafMaker) -> Result<(LeafInput, LeafOptions), SceneError> {
     let LeafMaker { data, settings } = leaf;
     if is_rays(data.text.as_bytes()) {
@@ -696,10 +699,11 @@ pub(crate) fn leaf_input(leaf: &LeafMaker) -> Result<(LeafInput, LeafOptions), S
     Ok((LeafInput::Marks(full), LeafOptions { spec, ..LeafOptions::default() }))
 }
 
-/// The marks in a file of a leaf, and what its thickness is if it says so; without a text those of the form that is set.
+/// Returns the marks in a file of a leaf, and its thickness if the file gives it; without a text, those of the form
+/// that is set.
 ///
 /// # Errors
-/// [`SceneError`]: what is wrong with it.
+/// [`SceneError`]: the fault of the file.
 pub fn leaf_marks(
     data: &LeafData,
     settings: &LeafSpec,
@@ -719,22 +723,23 @@ pub fn leaf_marks(
     Ok((read.marks, read.thickness))
 }
 
-/// A plant of a scene where it stands.
+/// Returns a plant of a scene in its place.
 pub fn standing<'a>(plant: &'a DocumentPlant, model: &'a Model) -> Standing<'a> {
     let Settings { name, placement, .. } = plant.settings();
     standing_at(name, model, placement)
 }
 
-/// A model at a place.
+/// Returns a model at a place.
 pub fn standing_at<'a>(name: &'a str, model: &'a Model, placement: &document::Placement) -> Standing<'a> {
     let (s, c) = base::ops::sin_cos(0.5 * placement.yaw_deg * (base::ops::PI / 180.0));
     let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
     Standing { name, model, position: placement.position, turn, scale: placement.scale }
 }
 
-/// The models of a scene as one, each where it stands. Parts carry the name of their plant where there are several.
+/// Joins the models of a scene into one, each in its place. Parts carry the name of their plant where there are
+/// several.
 ///
-/// Guaranteed: the model itself, bit for bit, of one plant that stands at the origin.
+/// Guaranteed: for one plant that stands at the origin, the model itself, bit for bit.
 pub fn scene_model(name: &str, plants: &[Standing<'_>]) -> Model {
     if let [only] = plants
         && only.is_home()
@@ -767,4 +772,29 @@ pub fn scene_model(name: &str, plants: &[Standing<'_>]) -> Model {
         }
     }
     whole
+}
+
+/// Returns the leaves of plants in their places, as [`scene_model`] joins what is left of the plants. `copies`: those
+/// of each plant.
+pub fn scene_copies(plants: &[Standing<'_>], copies: &[&[Copies]]) -> Vec<Copies> {
+    let (mut all, mut first) = (Vec::new(), 0);
+    for (k, (plant, copies)) in plants.iter().zip(copies).enumerate() {
+        for copy in *copies {
+            let name = if plants.len() > 1 {
+                format!("{}-{}-{}", k + 1, plant.name, copy.name)
+            } else {
+                copy.name.clone()
+            };
+            let places = copy.places.iter().map(|p| CopyPlace {
+                at: plant.turn * (p.at * plant.scale) + plant.position,
+                turn: plant.turn * p.turn,
+                scale: plant.scale * p.scale,
+                color: p.color,
+            });
+            let material = MaterialId::new(first + copy.material.index());
+            all.push(Copies { name, material, mesh: copy.mesh.clone(), places: places.collect() });
+        }
+        first += plant.model.materials.len();
+    }
+    all
 }

@@ -1,4 +1,4 @@
-//! The JSON Schemas of what can be set, for programs that make panels of them.
+//! JSON Schemas of settings, for programs that make panels of them.
 
 use bloom::FlowerSpec;
 use leaf::LeafSpec;
@@ -6,26 +6,26 @@ use sketch::SketchSpec;
 use skin::{OrganMaterial, SkinSpec};
 use spec::Spec;
 
-/// The JSON Schema of what can be set of a measured leaf.
+/// Returns the JSON Schema of the settings of a measured leaf.
 pub fn leaf_schema() -> &'static serde_json::Value {
     LeafSpec::schema()
 }
 
-/// The JSON Schema of what can be set of a drawing.
+/// Returns the JSON Schema of the settings of a drawing.
 pub fn sketch_schema() -> &'static serde_json::Value {
     SketchSpec::schema()
 }
 
-/// The JSON Schema of what can be set of the surface of a plant.
+/// Returns the JSON Schema of the settings of a plant's surface.
 pub fn skin_schema() -> &'static serde_json::Value {
     SkinSpec::schema()
 }
 
-/// The JSON Schema of a material of leaves, petals or sepals.
+/// Returns the JSON Schema of a material of leaves, petals or sepals.
 pub fn material_schema() -> &'static serde_json::Value {
     static PART: std::sync::OnceLock<serde_json::Value> = std::sync::OnceLock::new();
     PART.get_or_init(|| {
-        // What it refers to lies beside it in the schema of a file of materials.
+        // Its references point into the schema of a file of materials.
         let mut part = OrganMaterial::schema().pointer(OrganMaterial::PART).cloned().unwrap_or_default();
         part["$defs"] = OrganMaterial::schema()["$defs"].clone();
         if let Some(parts) = part["$defs"].as_object_mut() {
@@ -35,7 +35,7 @@ pub fn material_schema() -> &'static serde_json::Value {
     })
 }
 
-/// The JSON Schema of what can be set of a flower.
+/// Returns the JSON Schema of the settings of a flower.
 ///
 /// ```
 /// assert_eq!(burgeon::flower_schema()["properties"]["opening_days"]["x-unit"], "d");

@@ -16,12 +16,12 @@ use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
 use crate::scanned::{colours_of, painted, sheet_of};
 
-/// How a plant is made of the organs of a scan.
+/// Options for making a plant of the organs of a scan.
 #[derive(Clone, Debug)]
 pub struct SeedlingOptions {
-    /// How its blades are sought.
+    /// Settings for finding its blades.
     pub scan: ScanSpec,
-    /// Edits by hand and meshes.
+    /// Hand edits and meshes.
     pub leaf: LeafOptions,
 }
 
@@ -34,16 +34,16 @@ impl Default for SeedlingOptions {
     }
 }
 
-/// One organ as it was found.
+/// One organ as found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OrganFit {
     /// Its name among the organs of the scan.
     pub name: String,
-    /// Of the stem, or of the stalk of a leaf, millimetres; 0 for a leaf without one.
+    /// Length of the stem, or of the stalk of a leaf, millimetres; 0 for a leaf without one.
     pub axis_mm: f64,
     /// Mean radius of that axis.
     pub radius_mm: f64,
-    /// Of the blade, along its midrib; 0 for a stem.
+    /// Length of the blade, along its midrib; 0 for a stem.
     pub blade_mm: f64,
     /// Greatest width of the blade.
     pub width_mm: f64,
@@ -51,25 +51,25 @@ pub struct OrganFit {
     pub area_mm2: f64,
 }
 
-/// Why organs make no plant.
+/// Reason why organs make no plant.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SeedlingError {
     /// An organ has too few points.
     #[error(transparent)]
     Organ(#[from] BloomError),
-    /// Meshes and edits.
+    /// Fault of meshes and edits.
     #[error(transparent)]
     Leaf(#[from] LeafError),
 }
 
-/// What surfaces are looked at, against the scan: a tenth of what a hand's scanner tells apart.
+/// Step at which surfaces are sampled for comparison with the scan: a tenth of the resolution of a hand-held scanner.
 const STEP_M: f64 = 0.000_25;
 
-/// Makes a plant of the organs of a scan, each with its points, metres, +Y up; that which is called `stem` bears the others.
+/// Makes a plant of the organs of a scan, each with its points, metres, +Y up; the one called `stem` bears the others.
 ///
-/// Organs whose points have colours are painted with them. An organ of too few points for a blade becomes an axis, with a warning. The error is that of the surface against all points.
-/// Cost: n log n.
+/// Organs whose points have colours are painted with them. An organ of too few points for a blade becomes an axis, with
+/// a warning. The error is that of the surface against all points. Cost: n log n.
 ///
 /// # Errors
 /// [`SeedlingError`].
@@ -88,7 +88,7 @@ pub fn make_seedling(
         let limb = bloom::stem(points, run)?;
         let colours = colours_of(points, colors, run);
         bearers = add_axis(&mut plant, (AxisKind::Stem, 0), None, &limb, colours.as_ref());
-        fits.push(OrganFit { name: name.clone(), ..OrganFit::of(&limb) });
+        fits.push(OrganFit { name: name.clone(), ..OrganFit::from_limb(&limb) });
     }
     for (organ, key) in organs.iter().filter(|o| stem.is_none_or(|s| s.name != o.name)).zip(1_u64..) {
         let OrganPoints { name, points, colors } = organ;
@@ -101,7 +101,7 @@ pub fn make_seedling(
         let limb = bloom::stalk(points, joint, run)?;
         let foot = limb.line.last().copied().unwrap_or(joint);
         let scan = ScanSpec { base: Some(foot), ..options.scan };
-        // What it warns of, single leaves have: strays, a stalk that is missing.
+        // Single leaves give the same warnings: strays, a missing stalk.
         let found = leaf::fit_scan(&limb.beyond, &scan, run, &mut Report::default());
         let found = match found {
             Ok(found) => Some(found),
@@ -128,25 +128,25 @@ pub fn make_seedling(
     Ok((made, fits, error))
 }
 
-/// Places of a model's surface, to compare a scan with it.
+/// Returns places on a model's surface, to compare a scan with it.
 pub fn surface_places(model: &Model) -> Vec<DVec3> {
     let faces = model.parts.iter().map(|p| &p.mesh);
     let corners = |m: &TriMesh| m.triangles.iter().map(|t| t.map(|i| m.position(i))).collect::<Vec<_>>();
     bloom::surface_places(faces.flat_map(corners), STEP_M)
 }
 
-/// Where organs go.
+/// Plant under construction.
 struct Grove<'a> {
     plant: &'a mut Plant,
     textures: &'a mut Vec<Option<Arc<Texture>>>,
-    /// Of the organ that is added.
+    /// Colours of the organ that is added.
     colours: Option<CloudColours>,
     options: &'a SeedlingOptions,
     run: &'a Run<'a>,
 }
 
 impl Grove<'_> {
-    /// A leaf: its stalk, and its blade if one was found.
+    /// Adds a leaf: its stalk, and its blade if one was found.
     fn add_organ(
         &mut self,
         (name, key): (&str, u64),
@@ -157,7 +157,7 @@ impl Grove<'_> {
         let at = bearer.map(|b| (plant.nodes.position[b.index()], plant.nodes.radius_m[b.index()]));
         match &found {
             Some(found) => {
-                // The stalk goes up to the blade. One that is too short to be seen is half as thick as what bears it.
+                // The stalk leads to the blade. One that is too short to be seen is half as thick as its bearer.
                 let radius = limb.radii.last().copied().or(at.map(|a| 0.5 * a.1)).unwrap_or(0.000_5);
                 limb.line.push(found.grid[found.columns / 2]);
                 limb.radii.push(0.5 * radius);
@@ -168,7 +168,7 @@ impl Grove<'_> {
             limb.line.insert(0, place);
             limb.radii.insert(0, limb.radii.first().copied().unwrap_or(0.000_5));
         }
-        let mut fit = OrganFit { name: name.into(), ..OrganFit::of(&limb) };
+        let mut fit = OrganFit { name: name.into(), ..OrganFit::from_limb(&limb) };
         let mut bearer = bearer;
         if limb.line.len() >= 2 {
             bearer = add_axis(plant, (AxisKind::Petiole, key), bearer, &limb, self.colours.as_ref())
@@ -197,7 +197,7 @@ impl Grove<'_> {
 }
 
 impl OrganFit {
-    fn of(limb: &Limb) -> Self {
+    fn from_limb(limb: &Limb) -> Self {
         let count = limb.radii.len().max(1) as f64;
         Self {
             name: String::new(),
@@ -210,7 +210,7 @@ impl OrganFit {
     }
 }
 
-/// Its nodes, from the base on.
+/// Adds an axis and returns its nodes, from the base on.
 fn add_axis(
     plant: &mut Plant,
     (kind, key): (AxisKind, u64),

@@ -1,4 +1,4 @@
-//! Hand edits on the way from a description to its meshes.
+//! Hand edits between a description and its meshes.
 //!
 //! `Plant + [HandEdit] -> Plant, [EditReport]`
 
@@ -12,24 +12,24 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use shape::{AxisKey, Changed, Context, HandEdit, KeptGrowth, Outcome, Shaping};
 
-/// What became of one edit.
+/// Outcome of one edit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct EditReport {
     /// Its place in the list, from 0.
     pub index: usize,
     /// Whether it was done.
     pub done: bool,
-    /// `done`, or a stable word for why not.
+    /// `done`, or a stable word for the reason why not.
     pub code: String,
-    /// In plain words.
+    /// The outcome in plain words.
     pub said: String,
-    /// What it changed; all 0 if it was not done.
+    /// Changes that it made; all 0 if it was not done.
     #[serde(default)]
     pub changed: Changed,
 }
 
 impl EditReport {
-    fn of(index: usize, outcome: &Outcome) -> Self {
+    fn new(index: usize, outcome: &Outcome) -> Self {
         let (code, changed) = match outcome {
             Outcome::Done(changed) => ("done", *changed),
             Outcome::NotDone(why) => (why.code(), Changed::default()),
@@ -37,7 +37,7 @@ impl EditReport {
         Self { index, done: outcome.is_done(), code: code.into(), said: outcome.to_string(), changed }
     }
 
-    /// What a person is told of an edit that was not done.
+    /// Returns the warning about an edit that was not done.
     pub(crate) fn warning(&self, edits: &[PlantEdit]) -> Option<Warning> {
         let word = edits.get(self.index).map_or("edit", |e| e.edit.word());
         let message = || format!("edit {} by hand ({word}): {}", self.index, self.said);
@@ -47,12 +47,12 @@ impl EditReport {
     }
 }
 
-/// An edited plant with what became of its edits; changes of the last edits cost no more than these.
+/// An edited plant with the outcomes of its edits; a change of the last edits costs no more than these.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shaper {
-    /// All edits but the last of the list that was done last, and the plant after them.
+    /// All edits but the last of the previous list, and the plant after them.
     before: Option<Begun>,
-    /// What the last edit let grow: a hand may still hold on to it.
+    /// Growth of the last edit, which a hand may still hold.
     growing: KeptGrowth,
 }
 
@@ -82,12 +82,12 @@ impl Begun {
 }
 
 impl Shaper {
-    /// Another plant is to be edited.
+    /// Prepares for editing another plant.
     pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// The plant with those edits that are not left out. `plant`: the same as at the last call, unless it was forgotten.
+    /// Applies the edits that are not left out. `plant`: the same as at the last call, unless it was forgotten.
     pub(crate) fn shape(
         &mut self,
         plant: &Plant,
@@ -109,12 +109,12 @@ impl Shaper {
         for edit in &on[upto..] {
             whole.push_again(edit, context, &mut self.growing, run)?;
         }
-        let reports = rows.iter().zip(&whole.outcomes).map(|(&row, o)| EditReport::of(row, o)).collect();
+        let reports = rows.iter().zip(&whole.outcomes).map(|(&row, o)| EditReport::new(row, o)).collect();
         Ok((whole.shaping.into_plant(), reports))
     }
 }
 
-/// A plant after its edits; it is not kept for the next ones.
+/// Returns a plant after its edits; it is not kept for later edits.
 pub(crate) fn shaped(
     plant: Plant,
     edits: &[PlantEdit],
@@ -129,23 +129,23 @@ pub(crate) fn shaped(
 /// One branch in a list of all.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BranchRow {
-    /// What names it in an edits file: `{"path": [...]}`.
+    /// Its path in an edits file: `{"path": [...]}`.
     pub path: Vec<u32>,
-    /// Where along its bearer it sits, a share of the bearer's length.
+    /// Place on its bearer, as a share of the bearer's length.
     pub at: f64,
-    /// Where it starts, metres.
+    /// Position of its base, metres.
     pub base_m: DVec3,
-    /// Along its course, metres.
+    /// Length along its course, metres.
     pub length_m: f64,
-    /// From base to tip, a unit vector.
+    /// Direction from base to tip, a unit vector.
     pub direction: DVec3,
-    /// At its base, metres.
+    /// Radius at its base, metres.
     pub radius_m: f64,
-    /// Branches that it bears itself.
+    /// Number of branches that it bears directly.
     pub bears: usize,
 }
 
-/// The branches of a plant up to an order (0 is the trunk), each after what bears it.
+/// Returns the branches of a plant up to an order (0 is the trunk), each after its bearer.
 pub fn branch_rows(plant: &Plant, most_order: u32) -> Vec<BranchRow> {
     let mut rows: Vec<BranchRow> = AxisKey::paths(plant)
         .into_iter()
@@ -178,12 +178,12 @@ fn row(plant: &Plant, id: AxisId, path: Vec<u32>) -> BranchRow {
     }
 }
 
-/// An edits file with one edit of each kind, to be changed by its reader. For a tree of about 8 m.
+/// Returns an edits file with one edit of each kind, for its reader to change. For a tree of about 8 m.
 pub const fn edits_template() -> &'static str {
     include_str!("edits-template.json")
 }
 
-/// The JSON Schema of edits files: every field with its meaning, unit (`x-unit`), range and default.
+/// Returns the JSON Schema of edits files: every field with its meaning, unit (`x-unit`), range and default.
 pub fn edits_schema() -> serde_json::Value {
     schemars::schema_for!(shape::EditsFile).to_value()
 }

@@ -28,10 +28,11 @@ impl Default for ShootSpec {
     }
 }
 
-/// Makes a plant of leaves on one stem: the first leaf given is the lowest's form, the last the uppermost's.
+/// Makes a plant of leaves on one stem: the first leaf given has the form of the lowest, the last that of the
+/// uppermost.
 ///
-/// Leaves stand `azimuth_deg` apart with noise, spaced closer towards the top, where they are smaller and more
-/// upright; each has its own slight curl. The same bits for the same seed.
+/// Leaves stand `azimuth_deg` apart with noise, closer towards the top, where they are smaller and more upright; each
+/// has its own slight curl. The same bits for the same seed.
 ///
 /// # Errors
 /// [`LeafError`].
@@ -62,7 +63,7 @@ pub fn make_shoot(
     let made = report.stage("structure", run.clock, |_| {
         base::map_indexed(run.executor, places.len(), |k| -> Result<_, LeafError> {
             run.cancel.check()?;
-            // Even shares of the stem for each form.
+            // Equal shares of the stem for each form.
             let form = (k * forms.len() / count as usize).min(forms.len() - 1);
             let marks = places[k].leaf(&forms[form], options);
             let form = u32::try_from(form).unwrap_or(u32::MAX);
@@ -79,9 +80,9 @@ pub fn make_shoot(
     Ok(made)
 }
 
-/// The stem as an axis with a node for each leaf, and those nodes.
+/// Adds the stem as an axis with a node for each leaf, and returns those nodes.
 fn add_stem(plant: &mut Plant, stem: &BallBSpline, places: &[Place], seed: Seed) -> Vec<Option<NodeId>> {
-    // Between leaves as many as its bends take.
+    // Between leaves, as many nodes as its bends need.
     let mut at: Vec<f64> =
         (0..=24).map(|k| f64::from(k) / 24.0).chain(places.iter().map(|p| p.height)).collect();
     base::sort_by(&mut at, f64::total_cmp);
@@ -95,7 +96,7 @@ fn add_stem(plant: &mut Plant, stem: &BallBSpline, places: &[Place], seed: Seed)
     places.iter().map(|p| ids.get(nearest(p.height)).copied()).collect()
 }
 
-/// The stem as a ball curve from the ground up, a little unsteady.
+/// Makes the stem as a ball curve from the ground up, slightly irregular.
 fn stem(spec: &ShootSpec, seed: Seed) -> Result<BallBSpline, SplineError> {
     let mut stream = seed.stream(Draw::Curl);
     let height = if spec.height_m > 0.0 { spec.height_m.min(1000.0) } else { 1.0 };
@@ -113,7 +114,7 @@ fn stem(spec: &ShootSpec, seed: Seed) -> Result<BallBSpline, SplineError> {
     BallBSpline::approximate(&marks)
 }
 
-/// Where and how one leaf stands.
+/// Place and pose of one leaf.
 struct Place {
     /// Parameter of the stem.
     height: f64,
@@ -156,7 +157,7 @@ impl Place {
         }
     }
 
-    /// A leaf's marks turned so that it leaves the stem, scaled, bent and put at its place.
+    /// Returns a leaf's marks turned so that it leaves the stem, scaled, bent and set in its place.
     fn leaf(&self, form: &FullMarks, options: &LeafOptions) -> FullMarks {
         let root = form.root();
         // The measured leaf's own direction over the ground becomes -Z; a leaf measured upright stays so.

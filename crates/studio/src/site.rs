@@ -1,4 +1,4 @@
-//! What plants of a scene stand on: soil with its relief, stones and pots, with the label of each part.
+//! Sites of the plants of a scene: soil with its relief, stones and pots, with the label of each part.
 //!
 //! `SceneSiteSpec, seed -> SceneSite { model, labels }`
 
@@ -14,25 +14,25 @@ use crate::parts::{PART_OF_SOIL, PART_OF_STONE, part_of_organ};
 pub struct PotSpec {
     /// The middle of the soil in it, where the plant stands, metres.
     pub soil_m: DVec3,
-    /// Of its rim, metres, 0.005 to 5.
+    /// Radius of its rim, metres, 0.005 to 5.
     pub radius_m: f64,
-    /// From its foot to its rim, metres, 0.005 to 5.
+    /// Height from its foot to its rim, metres, 0.005 to 5.
     pub height_m: f64,
 }
 
 impl PotSpec {
-    /// The share of a pot's height up to which it is filled.
+    /// Share of a pot's height up to which it is filled.
     pub const FILLED: f64 = 0.9;
 }
 
-/// What plants stand on.
+/// The site that plants stand on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSiteSpec {
     /// Sides of the soil along x and z, around the origin at y = 0, metres, each 0.05 to 1000.
     pub soil_m: [f64; 2],
-    /// From the deepest hollow to the highest clod, metres, 0 to 0.5.
+    /// Height from the deepest hollow to the highest clod, metres, 0 to 0.5.
     pub relief_m: f64,
-    /// How many stones lie on it, 0 to 5000.
+    /// Number of stones on it, 0 to 5000.
     pub stones: u32,
     /// Radius of the largest stones, metres, 0.001 to 1; the smallest have a third of it.
     pub stone_m: f64,
@@ -46,12 +46,12 @@ impl Default for SceneSiteSpec {
     }
 }
 
-/// Meshes of a site, and what each is.
+/// Meshes of a site, and the label of each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneSite {
     /// Soil, stones and pots, each kind in a part of its own.
     pub model: Model,
-    /// Of each part of the model its row of [`PARTS`](crate::PARTS).
+    /// Row of each part of the model in [`PARTS`](crate::PARTS).
     pub labels: Vec<u8>,
 }
 
@@ -75,21 +75,24 @@ impl SceneSiteSpec {
     }
 }
 
-/// Cells along the longer side of the soil: a camera that stands on it loses only the cell that it stands in.
+/// Cells along the longer side of the soil: a camera that stands on it loses only the cell in which it stands.
 const SOIL_CELLS: usize = 160;
 
-/// Linear colours of dry loam, of grey stone and of clay.
+/// Linear colour of dry loam.
 const LOAM: [f32; 3] = [0.16, 0.105, 0.066];
+/// Linear colour of grey stone.
 const STONE: [f32; 3] = [0.30, 0.28, 0.26];
+/// Linear colour of clay.
 const CLAY: [f32; 3] = [0.34, 0.13, 0.066];
 
-/// By how much colours of soil and stones differ from their mean.
+/// Largest deviation of the colours of soil and stones from their mean.
 const COLOUR_SPREAD: f64 = 0.3;
 
-/// Makes soil, stones and pots. What is left away has no part.
+/// Makes soil, stones and pots. Omitted things have no part.
 ///
-/// Guaranteed: the same spec and seed give the same bits everywhere; the soil lies between 0 and the relief, its mean near half of
-/// that. Nothing of it is below 0, as pictures do not show what is. Cost: about 50,000 triangles of soil, 80 for each stone, 240 for each pot.
+/// Guaranteed: the same spec and seed give the same bits everywhere; the soil lies between 0 and the relief, its mean
+/// near half of that. Nothing of it is below 0, as pictures do not show what is. Cost: about 50,000 triangles of soil,
+/// 80 for each stone, 240 for each pot.
 ///
 /// # Errors
 /// [`RangeFault`] for a number out of its range.
@@ -119,7 +122,7 @@ impl SceneSite {
     }
 }
 
-/// Smooth noise of several sizes over the soil: value noise (Perlin 1985) on lattices of twice as many places each.
+/// Smooth noise of several sizes over the soil: value noise (Perlin 1985) on lattices, each of twice as many places.
 struct Relief {
     octaves: Vec<Vec<f64>>,
     height_m: f64,
@@ -128,9 +131,9 @@ struct Relief {
 impl Relief {
     /// Cells of the coarsest lattice along a side.
     const COARSEST: usize = 8;
-    /// Lattices.
+    /// Number of lattices.
     const OCTAVES: usize = 4;
-    /// The height of a lattice over that of the next coarser one.
+    /// Height of a lattice over that of the next coarser one.
     const FALL: f64 = 0.55;
 
     fn new(seed: Seed, height_m: f64) -> Self {
@@ -142,7 +145,7 @@ impl Relief {
         Self { octaves: (0..Self::OCTAVES).map(octave).collect(), height_m }
     }
 
-    /// 0 to 1, at a place of the soil whose coordinates are shares of its sides.
+    /// Returns the height, 0 to 1, at a place of the soil whose coordinates are shares of its sides.
     fn share(&self, at: DVec2) -> f64 {
         let (mut sum, mut most, mut weight) = (0.0, 0.0, 1.0);
         for (k, lattice) in self.octaves.iter().enumerate() {
@@ -158,7 +161,7 @@ impl Relief {
     }
 }
 
-/// A lattice of `cells` by `cells` between its places.
+/// Interpolates a lattice of `cells` by `cells` between its places.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the lattice")]
 fn sampled(lattice: &[f64], cells: usize, at: DVec2) -> f64 {
     let s = at.clamp(DVec2::ZERO, DVec2::ONE) * cells as f64;
@@ -203,7 +206,8 @@ fn soil([width, depth]: [f64; 2], relief: &Relief) -> TriMesh {
     mesh
 }
 
-/// A mesh of rings from the lowest to the highest point, each of so many places; the first and the last may be of radius 0.
+/// A mesh of rings from the lowest to the highest point, each of `around` places; the first and the last may have
+/// radius 0.
 struct Rings {
     around: u32,
     first: u32,
@@ -214,7 +218,7 @@ impl Rings {
         Self { around, first: index(mesh.positions.len()) }
     }
 
-    /// Triangles between rings `k` and `k + 1`, from the outside counter-clockwise where rings go from below upwards.
+    /// Adds triangles between rings `k` and `k + 1`, counter-clockwise from the outside where rings ascend.
     fn join(&self, mesh: &mut TriMesh, k: u32) {
         for j in 0..self.around {
             let next = (j + 1) % self.around;
@@ -312,7 +316,7 @@ mod tests {
         assert_eq!(site.labels.len(), 3);
         for part in &site.model.parts[1..] {
             let corner = |i: u32| DVec3::from_array(part.mesh.positions[i as usize].map(f64::from));
-            // By the divergence theorem, what faces outwards encloses a volume above 0.
+            // By the divergence theorem, a surface that faces outwards encloses a volume above 0.
             let volume: f64 = part
                 .mesh
                 .triangles

@@ -1,4 +1,4 @@
-//! A drawing of several plants becomes several drawings, each a plant of its own.
+//! Splits a drawing of several plants into several drawings, each a plant of its own.
 
 use base::{Run, ops};
 use document::{
@@ -12,10 +12,10 @@ use sketch::SketchSpec;
 use crate::evaluate::{Evaluator, FrontView};
 use crate::make::{MakeError, SketchOptions};
 
-/// The name of the step in the history.
+/// Name of the step in the history.
 const STEP: &str = "split-plant";
 
-/// Why a drawing stays one plant.
+/// Reason why a drawing stays one plant.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplitError {
@@ -28,7 +28,7 @@ pub enum SplitError {
         /// Name of the plant.
         name: String,
     },
-    /// Edits name the branches of the whole.
+    /// Its edits refer to branches of the whole.
     #[error(
         "\"{name}\" has edits by hand, which would be lost: split it before it is edited, or delete the edits"
     )]
@@ -39,7 +39,7 @@ pub enum SplitError {
     /// It cannot be made.
     #[error(transparent)]
     Make(#[from] MakeError),
-    /// The document does not take the parts.
+    /// The document does not accept the parts.
     #[error(transparent)]
     Command(#[from] CommandError),
 }
@@ -53,15 +53,15 @@ base::coded!(SplitError {
     Self::Command(e) => e, CommandError;
 });
 
-/// Puts the plants of a drawing, each with the strokes that show it, in the place of the one plant that they were: one
-/// step of undo, called `split-plant`.
+/// Replaces a plant of a drawing by the plants in it, each with the strokes that show it: one step of undo, called
+/// `split-plant`.
 ///
-/// Guaranteed: every stroke of a plant is in one of them; each stands where it stood and is as tall as it was, from left
-/// to right, after the other plants; after an error the document is as it was. Not guaranteed: that a plant by itself is
-/// read as it was beside the others. The line of a ground that they share belongs to none of them and is left out.
+/// Guaranteed: every stroke of a plant is in one of them; each keeps its place and its height, from left to right,
+/// after the other plants; after an error the document is as it was. Not guaranteed: that a plant by itself is read as
+/// it was among the others. The line of a ground that they share belongs to none of them and is left out.
 ///
 /// # Errors
-/// [`SplitError`]: it is no drawing, shows one plant, or has edits by hand; or the document has no room.
+/// [`SplitError`]: it is not a drawing, shows one plant, or has hand edits; or the document has no room.
 pub fn split(editor: &mut Editor, plant: PlantId, run: &Run<'_>) -> Result<(), SplitError> {
     let parts = parts(editor.document(), plant, run)?;
     editor.begin_gesture(STEP)?;
@@ -94,7 +94,7 @@ fn parts(document: &Document, id: PlantId, run: &Run<'_>) -> Result<Vec<NewPlant
     (0..reading.plants.len()).map(|k| whole.part(k, run)).collect()
 }
 
-/// What a drawing is read as, and how it lies in its plant.
+/// Returns the reading of a drawing, and its placement in its plant.
 fn looked_at(
     drawing: &Drawing,
     options: &SketchOptions,
@@ -112,14 +112,14 @@ fn looked_at(
 /// A drawing of several plants.
 struct Whole<'a> {
     plant: &'a DocumentPlant,
-    /// One metre tall.
+    /// Options for a plant of one metre in height.
     options: SketchOptions,
     reading: &'a Reading,
     front: FrontView,
 }
 
 impl Whole<'_> {
-    /// The plant of one part of the reading.
+    /// Makes the plant of one part of the reading.
     fn part(&self, part: usize, run: &Run<'_>) -> Result<NewPlant, SplitError> {
         let strokes = self.strokes(part);
         let mut settings = self.plant.settings().clone();
@@ -132,7 +132,7 @@ impl Whole<'_> {
         let classes = base::map_of((0..).zip(&strokes).filter_map(|(row, s)| Some((row, s.class?))));
         let (_, front) =
             looked_at(&drawing, &SketchOptions { classes, ..self.options.clone() }, self.plant, run)?;
-        // One metre of it is so much of the whole.
+        // Size of one metre of it in the whole.
         let height = self.front.metres_per_unit / front.metres_per_unit;
         let at = (front.origin - self.front.origin) * self.front.metres_per_unit;
         let place = &mut settings.placement;
@@ -147,17 +147,17 @@ impl Whole<'_> {
         Ok(NewPlant { settings, strokes })
     }
 
-    /// The strokes of a part in the order in which they were drawn.
+    /// Returns the strokes of a part in the order in which they were drawn.
     fn strokes(&self, part: usize) -> Vec<NewStroke> {
         let own = &self.reading.plants[part].strokes;
         (0..)
             .zip(self.plant.strokes())
             .filter(|(row, _)| own.contains(row))
-            .map(|(_, s)| NewStroke::of(s))
+            .map(|(_, s)| NewStroke::from_stroke(s))
             .collect()
     }
 
-    /// The flowers of a part that face away, by their numbers within it.
+    /// Returns the flowers of a part that face away, by their numbers within it.
     fn flipped(&self, part: usize, flipped: &[u32]) -> Vec<u32> {
         let of = |plant: &PlantReading, flower: usize| {
             let strokes = self.reading.flowers[flower].petals.iter().filter_map(|p| p.source);
@@ -178,7 +178,7 @@ mod tests {
     use glam::DVec2;
     use mesh::Bounds;
 
-    /// Fixture drawings side by side, each of this height, and the line of the ground under them.
+    /// Draws fixtures next to one another, each of the given height, and the line of the ground under them.
     fn row(of: &[(&str, f64)]) -> Drawing {
         let mut all = Drawing { name: "row".into(), ..Drawing::default() };
         let mut x = 0.0;
@@ -202,7 +202,7 @@ mod tests {
         all
     }
 
-    /// The box around plants of a scene that are only moved.
+    /// Returns the box around plants of a scene that are only moved.
     fn bounds(document: &Document, plants: &[PlantId]) -> Bounds {
         let mut scene = SceneEvaluator::default();
         let mut all = Bounds::EMPTY;
@@ -252,7 +252,7 @@ mod tests {
         let mut editor = Editor::new(one);
         let why = split(&mut editor, id, &Run::plain());
         assert!(matches!(why, Err(SplitError::OnePlant { name }) if name == "row"));
-        editor.run(SketchCommand::Clear.of(id)).unwrap();
+        editor.run(SketchCommand::Clear.for_plant(id)).unwrap();
         assert!(matches!(split(&mut editor, id, &Run::plain()), Err(SplitError::Make(_))));
         editor.run(SceneCommand::Remove(vec![id])).unwrap();
         assert!(matches!(split(&mut editor, id, &Run::plain()), Err(SplitError::NoDrawing)));
@@ -262,7 +262,7 @@ mod tests {
         let turn = shape::Turn { about: DVec3::Z, degrees: 25.0 };
         let edit = shape::HandEdit::Rotate { axis: shape::AxisKey::Path(vec![0]), turn };
         let id = editor.document().plants()[0].id();
-        editor.run(document::ShapeCommand::Add(edit.into()).of(id)).unwrap();
+        editor.run(document::ShapeCommand::Add(edit.into()).for_plant(id)).unwrap();
         assert!(matches!(split(&mut editor, id, &Run::plain()), Err(SplitError::Edited { .. })));
         assert_eq!(editor.document().plants().len(), 1);
     }
@@ -275,7 +275,7 @@ mod tests {
         let mut turned = plain.clone();
         let position = DVec3::new(1.0, 0.0, 2.0);
         let placement = Placement { position, yaw_deg: 90.0, scale: 2.0 };
-        turned.run(PlantCommand::Place(placement).of(id)).unwrap();
+        turned.run(PlantCommand::Place(placement).for_plant(id)).unwrap();
         for editor in [&mut plain, &mut turned] {
             split(editor, id, &Run::plain()).unwrap();
         }

@@ -6,8 +6,8 @@ use formats::{AddedColumn, ExportSpec, Room, StructureFormat, WriteError};
 use plant::Plant;
 use skin::{SkinSpec, shape_meshes};
 
-/// Writes the structure of a plant; where the format has meshes, its organs as [`skin::skin`] draws them with the usual
-/// fineness. See [`formats::write_structure`].
+/// Writes the structure of a plant; where the format has meshes, its organs as [`skin::skin`] draws them with the
+/// default fineness. See [`formats::write_structure`].
 ///
 /// # Errors
 /// [`WriteError::Io`].
@@ -20,7 +20,8 @@ pub fn write_structure(
     write_structure_with(plant, &[], format, spec, out)
 }
 
-/// As [`write_structure`], with columns of axes and organs beside those of the format: see [`formats::write_structure_with`].
+/// Writes as [`write_structure`] does, with additional columns of axes and organs: see
+/// [`formats::write_structure_with`].
 ///
 /// # Errors
 /// [`WriteError::Io`].

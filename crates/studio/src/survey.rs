@@ -1,4 +1,4 @@
-//! A plant as a scanner sees it: points on its surface, each with what it lies on.
+//! A plant as a scanner sees it: points on its surface, each with its part.
 //!
 //! `Model -> beams from stations around it -> hits -> a sample of them -> points with organ, axis, order`
 
@@ -13,14 +13,14 @@ use spec::RangeFault;
 use crate::parts::{NOTHING, part_of_axis, part_of_organ};
 use crate::site::SceneSite;
 
-/// How a plant is scanned.
+/// Settings for scanning a plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurveySpec {
-    /// Points, 1 to 5 million. Fewer come back only where the beams do not meet the plant so often.
+    /// Number of points, 1 to 5 million. Fewer are returned only where the beams meet the plant less often.
     pub points: u32,
-    /// Places of the scanner, evenly around the plant, 1 to 64.
+    /// Number of places of the scanner, evenly around the plant, 1 to 64.
     pub stations: u32,
-    /// How far above the horizon of the plant's middle the scanner stands, degrees, -80 to 80.
+    /// Elevation of the scanner above the horizon of the plant's middle, degrees, -80 to 80.
     pub elevation_deg: f64,
     /// Standard deviation of the distance along each beam, metres, 0 to 1.
     pub noise_m: f64,
@@ -47,7 +47,7 @@ impl SurveySpec {
         })
     }
 
-    /// The views of all stations with beams `pixels` by `pixels`.
+    /// Returns the views of all stations with `pixels` by `pixels` beams.
     fn views(&self, pixels: u32) -> Vec<PictureSpec> {
         let turn = base::ops::TAU / f64::from(self.stations);
         let view =
@@ -63,7 +63,7 @@ impl SurveySpec {
     }
 }
 
-/// Why there is no cloud.
+/// Reason why there is no cloud.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurveyError {
     /// A number is out of its range.
@@ -82,31 +82,31 @@ base::coded!(SurveyError {} wraps {
 /// The columns of a cloud, all of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surveyed {
-    /// Metres, +Y up.
+    /// Positions, metres, +Y up.
     pub points: Vec<[f64; 3]>,
     /// Unit vectors of the surface, towards the scanner.
     pub normals: Vec<[f32; 3]>,
-    /// Row of [`PARTS`](crate::PARTS).
+    /// Rows of [`PARTS`](crate::PARTS).
     pub part: Vec<u8>,
-    /// Row of the plant's axes: that it lies on or, of an organ, that bears the organ; [`NOTHING`] for none.
+    /// Row of the plant's axes: the axis that the point lies on, or that bears its organ; [`NOTHING`] for none.
     pub axis: Vec<i32>,
     /// Row of the plant's organs; [`NOTHING`] on axes.
     pub organ: Vec<i32>,
     /// Branching order of the axis; 0 for none.
     pub order: Vec<i32>,
-    /// The place of the scanner, from 0.
+    /// Number of the place of the scanner, from 0.
     pub station: Vec<u8>,
-    /// From the scanner, metres, without noise.
+    /// Distance from the scanner, metres, without noise.
     pub distance: Vec<f32>,
 }
 
-/// What each triangle of a model lies on: where the runs of each part end, and what they belong to.
+/// Owner of each triangle of a model: the ends of the runs of each part, and their axes or organs.
 struct Owned<'a> {
     plant: &'a Plant,
     ends: Vec<Vec<(u32, Owner<'a>)>>,
 }
 
-/// What a place of a model is.
+/// Label of a place of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Label {
     part: u8,
@@ -152,7 +152,7 @@ impl<'a> Owned<'a> {
         self.plant.axes.get(axis.index()).map_or(0, |a| i32::try_from(a.order).unwrap_or(i32::MAX))
     }
 
-    /// Of axes that are one tube, that whose line passes nearest.
+    /// Returns, of axes that share one tube, the one whose line passes nearest.
     fn nearest(&self, axes: &[AxisId], at: DVec3) -> Option<AxisId> {
         let [first, others @ ..] = axes else { return None };
         if others.is_empty() {
@@ -176,7 +176,8 @@ fn row(index: usize) -> i32 {
     i32::try_from(index).unwrap_or(i32::MAX)
 }
 
-/// What the triangles of each part of a model lie on: rows of [`PARTS`](crate::PARTS), of the plant's axes and of its organs.
+/// Returns the labels of the triangles of each part of a model: rows of [`PARTS`](crate::PARTS), of the plant's axes
+/// and of its organs.
 ///
 /// `layout`: of this model. A triangle of a tube along several axes has the axis that is nearest to its middle.
 pub fn triangle_labels(plant: &Plant, model: &Model, layout: &Layout) -> Vec<Vec<[i32; 3]>> {
@@ -198,12 +199,12 @@ fn to_f64(p: &[f32; 3]) -> DVec3 {
     DVec3::from_array(p.map(f64::from))
 }
 
-/// Scans a plant from stations around it: what a beam meets first is a point, what lies behind it is hidden.
+/// Scans a plant from stations around it: the first surface that a beam meets gives a point and hides those behind it.
 ///
 /// Each station's beams are even over its view, so near and frontal surfaces get more points, as from a scanner. Of all
-/// that the beams meet, `points` are drawn by chance without putting any back.
-/// `layout`: of this model. Guaranteed: the same bits for any executor; points lie on the surface to the last bit but for
-/// the noise, which is along the beam. Not modelled: beams that meet two surfaces at once, and reflectance.
+/// hits of the beams, `points` are drawn by chance without replacement. `layout`: of this model. Guaranteed: the same
+/// bits for any executor; points lie on the surface to the last bit except for the noise, which is along the beam. Not
+/// modelled: beams that meet two surfaces at once, and reflectance.
 ///
 /// # Errors
 /// [`SurveyError`].
@@ -218,21 +219,21 @@ pub fn survey(
     Ok(beams(model, spec, (seed, run), label)?.0)
 }
 
-/// A plant of a stand: where it stands, and what of it lies where in its model.
+/// A plant of a stand: its place, and the places of its parts in its model.
 #[derive(Clone, Copy, Debug)]
 pub struct Stood<'a> {
-    /// Where, and the model.
+    /// Place and model.
     pub standing: Standing<'a>,
     /// Its structure.
     pub plant: &'a Plant,
-    /// Of this model.
+    /// Layout of this model.
     pub layout: &'a Layout,
 }
 
-/// Scans a stand from stations around all of it, as [`survey`] scans a plant: plants hide one another. Labels are rows of
-/// the tables of each point's own plant. `site`: what it stands on, which is seen as well.
+/// Scans a stand from stations around all of it, as [`survey`] scans a plant: plants hide one another. Labels are rows
+/// of the tables of each point's own plant. `site`: the ground of the stand, which is scanned as well.
 ///
-/// Returns the cloud, and of each point the plant, by its place in the stand; [`NOTHING`] on the site.
+/// Returns the cloud, and for each point its plant, by its place in the stand; [`NOTHING`] on the site.
 ///
 /// # Errors
 /// [`SurveyError`].
@@ -246,7 +247,7 @@ pub fn survey_stand(
     standing.extend(site.map(|site| Standing::home("site", &site.model)));
     let model = crate::scene_model("stand", &standing);
     let owned: Vec<Owned<'_>> = stand.iter().map(|s| Owned::new(s.plant, s.layout)).collect();
-    // The parts of the plants follow one another.
+    // The parts of the plants are in the order of the plants.
     let mut first = 0;
     let firsts: Vec<u32> = stand
         .iter()
@@ -269,7 +270,7 @@ pub fn survey_stand(
     beams(&model, spec, (seed, run), label)
 }
 
-/// What the beams of all stations meet of a model; `label` says what that is, and of which plant.
+/// Returns the hits of the beams of all stations on a model; `label` returns the label and the plant of each.
 fn beams(
     model: &Model,
     spec: &SurveySpec,
@@ -288,7 +289,7 @@ fn beams(
         if count >= wanted || count == 0 || pixels >= MOST_PIXELS {
             break seen;
         }
-        // One step where the share of beams that meet it stays what it is.
+        // One step suffices where the share of beams that meet the plant is constant.
         let finer = (1.1 * wanted as f64 / count as f64).sqrt().clamp(1.1, 8.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 8 times 4096")]
         let next = (f64::from(pixels) * finer).ceil() as u32;
@@ -317,14 +318,14 @@ fn beams(
     Ok((out, plants))
 }
 
-/// A finer grid of beams would have more pixels than a picture may.
+/// Largest side of the grid of beams: that of a picture.
 const MOST_PIXELS: u32 = 4096;
 
-/// `most` of the rows `0..all` by chance, ascending; all of them if there are no more.
+/// Draws `most` of the rows `0..all` by chance, ascending; all of them if there are no more.
 fn sample(all: usize, most: usize, seed: Seed) -> Vec<usize> {
     let mut chance = seed.stream(Draw::Sampling);
     let mut rows = Vec::with_capacity(most.min(all));
-    // Knuth's algorithm S: each row with the share that is still wanted of those that are left.
+    // Knuth's algorithm S: each row with the share that is still needed of the remaining ones.
     for row in 0..all {
         let (left, wanted) = ((all - row) as f64, (most.min(all) - rows.len()) as f64);
         if chance.uniform() * left < wanted {

@@ -1,4 +1,4 @@
-//! Any leaf as the blade of any plant: marks or a model -> [`LeafTemplate`] -> the leaves of a plant.
+//! Leaf templates: any leaf as the blade of any plant. Marks or a model -> [`LeafTemplate`] -> the leaves of a plant.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use skin::{LeafColours, Worn};
 use crate::leaf_blade::leaf_blade;
 use crate::leaves::{LeafError, LeafOptions};
 
-/// A leaf that other makers' plants bear: a blade of length 1 and, where there is one, its picture.
+/// A leaf that other makers' plants bear: a blade of length 1 and its picture, if it has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeafTemplate {
     /// The blade, of length 1.
@@ -22,14 +22,14 @@ pub struct LeafTemplate {
     texture: Option<Arc<Texture>>,
 }
 
-/// Why a model is no leaf.
+/// Reason why a model is not a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TemplateError {
-    /// No part with triangles.
+    /// It has no part with triangles.
     #[error("the model has no surface; a leaf needs a sheet of triangles with an open edge")]
     NoSurface,
-    /// Nothing but closed surfaces.
+    /// It has only closed surfaces.
     #[error("the model has no open edge: a closed solid has no outline; use a flat sheet")]
     Closed,
     /// The outline encloses nothing, or crosses itself beyond repair.
@@ -37,11 +37,11 @@ pub enum TemplateError {
     Degenerate,
 }
 
-// A template's outline: enough for lobes, few enough for a crown of leaves.
+// Points of a template's outline: enough for lobes, few enough for a crown of leaves.
 const OUTLINE_POINTS: usize = 96;
 
 impl LeafTemplate {
-    /// From a measured leaf: its outline laid flat, its veins, its bend and fold, its picture.
+    /// Makes a template of a measured leaf: its outline laid flat, its veins, its bend and fold, its picture.
     ///
     /// # Errors
     /// [`LeafError`] for marks that make no leaf.
@@ -68,7 +68,7 @@ impl LeafTemplate {
         Ok(Self { blade, texture })
     }
 
-    /// From a leaf of chief veins: its outline laid flat, as of a model.
+    /// Makes a template of a leaf of chief veins: its outline laid flat, like that of a model.
     ///
     /// # Errors
     /// [`LeafError`] for veins that make no leaf; [`TemplateError`] inside for a blade without an outline.
@@ -89,11 +89,11 @@ impl LeafTemplate {
         Ok(Self::of_model(&model))
     }
 
-    /// From a model of one leaf: the open edge of its largest surface, laid flat.
+    /// Makes a template of a model of one leaf: the open edge of its largest surface, laid flat.
     ///
     /// The root is the place of the outline nearest to the model's origin (where modellers put it), the midrib the
     /// straight line to the point farthest from there. Bend and fold are fitted by least squares. The material's
-    /// picture comes along where texture coordinates lie in its box.
+    /// picture is included where texture coordinates lie in its box.
     ///
     /// # Errors
     /// [`TemplateError`].
@@ -140,7 +140,7 @@ impl LeafTemplate {
         Ok(Self { blade, texture })
     }
 
-    /// The largest leaf of a plant, without its picture; none if it has no leaf.
+    /// Makes a template of the largest leaf of a plant, without its picture; `None` if it has no leaf.
     pub fn of_plant(plant: &Plant) -> Option<Self> {
         let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
         let blades = leaves.filter_map(|o| match plant.shapes.get(o.shape.index())? {
@@ -158,7 +158,7 @@ impl LeafTemplate {
         Some(Self { blade, texture: None })
     }
 
-    /// Gives every leaf of a plant this blade, each as long as the one before it; returns how many leaves.
+    /// Gives every leaf of a plant this blade, each as long as its own; returns how many leaves.
     ///
     /// Places, directions, sizes and tints of the leaves stay. Cost: linear in shapes and organs.
     pub fn apply(&self, plant: &mut Plant) -> usize {
@@ -210,7 +210,7 @@ impl LeafTemplate {
         }
     }
 
-    /// The blade at a length in metres.
+    /// Returns the blade at a length in metres.
     pub fn scaled(&self, length_m: f64) -> Blade {
         let scaled = |line: &[DVec2]| line.iter().map(|&p| p * length_m).collect::<Vec<_>>();
         Blade {
@@ -222,14 +222,14 @@ impl LeafTemplate {
     }
 }
 
-/// At most [`OUTLINE_POINTS`] points; the first, the root, stays.
+/// Returns at most [`OUTLINE_POINTS`] points; the first, the root, stays.
 fn thinned(outline: Vec<DVec2>) -> Vec<DVec2> {
     let step = outline.len().div_ceil(OUTLINE_POINTS).max(1);
     if step == 1 {
         return outline;
     }
     let thin: Vec<DVec2> = outline.iter().copied().step_by(step).collect();
-    // Teeth that lie closer than the points may come to cross one another.
+    // Teeth that are closer than the points may cross one another in the result.
     if geom::self_crossings(&thin) > 0 { outline } else { thin }
 }
 
@@ -239,7 +239,7 @@ fn flat_uv(flat: &FlatLeaf, p: DVec2) -> DVec2 {
     DVec2::new(at.x, 1.0 - at.y)
 }
 
-/// A picture drawn again in the chart in which leaves of plants are textured.
+/// Redraws a picture in the chart in which leaves of plants are textured.
 fn charted(picture: &Texture, blade: &Blade, uv_of: impl Fn(DVec2) -> DVec2) -> Texture {
     let chart = skin::BladeChart::new(blade);
     let (width, height) = chart_size(&chart);
@@ -254,7 +254,7 @@ fn charted(picture: &Texture, blade: &Blade, uv_of: impl Fn(DVec2) -> DVec2) -> 
     out
 }
 
-/// 512 pixels from tip to root, and as wide as the leaf is.
+/// Returns 512 pixels from tip to root, and the width in proportion to the leaf's.
 fn chart_size(chart: &skin::BladeChart) -> (u32, u32) {
     let aspect = (chart.place(DVec2::new(1.0, 0.5)).x - chart.place(DVec2::new(0.0, 0.5)).x)
         / (chart.place(DVec2::X).y - chart.place(DVec2::ONE).y).max(1e-9);
@@ -263,7 +263,7 @@ fn chart_size(chart: &skin::BladeChart) -> (u32, u32) {
     (width, 512)
 }
 
-/// The pixel at `uv`, the nearest within the picture.
+/// Returns the pixel at `uv`, the nearest within the picture.
 fn sample(picture: &Texture, uv: DVec2) -> [u8; 4] {
     let at = |x: f64, n: u32| {
         let x = if x.is_finite() { x.clamp(0.0, 1.0) * f64::from(n) } else { 0.0 };
@@ -275,7 +275,7 @@ fn sample(picture: &Texture, uv: DVec2) -> [u8; 4] {
     picture.pixels.get(k..k + 4).and_then(|p| p.try_into().ok()).unwrap_or([255; 4])
 }
 
-/// A surface whose vertices in the same place are one.
+/// A surface whose vertices at the same place are one.
 struct Sheet {
     points: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -310,7 +310,7 @@ impl Sheet {
         self.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
     }
 
-    /// The longest open edge, as points in order.
+    /// Returns the longest open edge, as points in order.
     fn rim(&self) -> Vec<u32> {
         let mut sides: BTreeMap<(u32, u32), i32> = BTreeMap::new();
         for &[a, b, c] in &self.triangles {
@@ -345,7 +345,7 @@ impl Sheet {
         best.1
     }
 
-    /// The points in the plane that fits them best, root at the origin, tip at (0, 1); none without extent.
+    /// Lays the points into the plane that fits them best, root at the origin, tip at (0, 1); `None` without extent.
     fn flat(&self, rim: &[u32]) -> Option<FlatSheet> {
         let used: Vec<DVec3> = self.triangles.iter().flatten().map(|&k| self.points[k as usize]).collect();
         let (_, axes, lambda) = geom::pca3(&used)?;
@@ -369,7 +369,7 @@ impl Sheet {
         let root = if at(near).length() < 0.25 * size {
             near
         } else {
-            // Far from the origin: of the two ends the lower one.
+            // Far from the origin: the lower one of the two ends.
             let a = far(at(rim[0]))?;
             let b = far(at(a))?;
             if at(b).y < at(a).y { b } else { a }
@@ -400,8 +400,8 @@ struct FlatSheet {
 }
 
 impl FlatSheet {
-    /// Bend and fold by least squares: height = tilt y - B y^2 + fold |x| over the root. The tilt is that of the
-    /// plane against the leaf's direction at its root; the plant decides on that direction.
+    /// Fits bend and fold by least squares: height = tilt y - B y^2 + fold |x| over the root. The tilt is that of the
+    /// plane against the leaf's direction at its root; the plant determines that direction.
     fn relief(&self) -> Relief {
         let start = self.points.iter().zip(&self.heights).filter(|(p, _)| p.length() < 0.05);
         let (sum, n) = start.fold((0.0, 0.0), |(s, n), (_, z)| (s + z, n + 1.0));
@@ -422,7 +422,7 @@ impl FlatSheet {
         relief
     }
 
-    /// The picture of the model in the blade's chart: each triangle drawn where it lies.
+    /// Draws the picture of the model in the blade's chart, each triangle in its place.
     fn painted(&self, mesh: &TriMesh, welded: &[u32], picture: &Texture, blade: &Blade) -> Texture {
         let chart = skin::BladeChart::new(blade);
         let (width, height) = chart_size(&chart);
@@ -454,7 +454,7 @@ impl FlatSheet {
                 }
             }
         }
-        // Beyond the outline each line goes on with its nearest colour, so that no seam shows at the margin.
+        // Beyond the outline each row continues with its nearest colour, so that no seam shows at the margin.
         let mut out = Texture { width, height, pixels: Vec::with_capacity(4 * pixels.len()) };
         let mut last = [96, 128, 64, 255];
         for line in pixels.chunks(width as usize) {
@@ -472,7 +472,7 @@ impl FlatSheet {
 mod tests {
     use super::*;
 
-    /// A rhombic leaf of a grid, its root at the origin, its tip on -Z, upper side up, sagging.
+    /// Makes a rhombic leaf of a grid, its root at the origin, its tip on -Z, upper side up, sagging.
     fn sheet() -> TriMesh {
         let mut mesh = TriMesh::default();
         for i in 0..=8_u32 {

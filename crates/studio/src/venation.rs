@@ -1,4 +1,4 @@
-//! Chief veins that start together -> a model: palmate and parallel leaves.
+//! Chief veins with a common start -> a model: palmate and parallel leaves.
 
 use base::{Counted, Report, Run};
 use leaf::{RayLeaf, Rays};
@@ -9,7 +9,7 @@ use crate::leaves::{LeafError, LeafOptions, bear, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 
-/// Makes a leaf whose chief veins start together.
+/// Makes a leaf whose chief veins have a common start.
 ///
 /// The blade's colour is on its vertices, by the distance from the nearest vein. Of `options` thickness, resolution,
 /// rings and `side_veins` are used.
@@ -33,7 +33,8 @@ pub fn make_ray_leaf(
     run.cancel.check()?;
     let colours = LeafColours::default().wilted(options.spec.wilt);
     let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));
-    // A fiftieth of the leaf: as far as the pale band beside a chief vein is seen; less where veins stand close.
+    // A fiftieth of the leaf: the visible width of the pale band along a chief vein; less where veins are close
+    // together.
     let apart = leaf.veins.windows(2).map(|w| {
         let at = |v: &plant::Vein| v.curve.ball(0.5).centre;
         at(&w[0]).distance(at(&w[1]))
@@ -64,7 +65,7 @@ pub fn make_ray_leaf(
         area_mm2: 1e6 * meshes.surface.area(),
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.surface, meshes.blade_faces),
-        fit_error: LeafFit::of(&distances),
+        fit_error: LeafFit::from_distances(&distances),
         vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
         swallowed_rings: crate::leaves::swallowed(options, &meshes),
         crossing_rings: Some(meshes.crossing as u64),

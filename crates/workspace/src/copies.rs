@@ -8,18 +8,18 @@ use crate::scatter::{places, turned};
 use crate::{Scatter, Workspace, WorkspaceError};
 
 impl Workspace {
-    /// Copies a plant to many places, as one step of undo. Places beside the plants that are there are left out, and so
-    /// are those for which a scene has no room.
+    /// Copies a plant to many places, as one step of undo. Places too near to existing plants are left out, and so are
+    /// those for which a scene has no room.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: that plant is not there, or no copy has room.
+    /// [`WorkspaceError`]: the plant does not exist, or no copy has room.
     pub(crate) fn scatter(&mut self, wanted: &Scatter) -> Result<(), WorkspaceError> {
         self.let_go();
         let document = self.editor.document();
         let plant = document.plant(wanted.plant).ok_or(WorkspaceError::PlantGone)?;
         let own = plant.settings();
         let (Placement { position, scale, .. }, seed) = (own.placement, own.seed);
-        // Copies are one with the plant they are of.
+        // Copies form one group with their plant.
         let group = if own.group.is_empty() { own.name.clone() } else { own.group.clone() };
         let taken: Vec<DVec2> = document
             .plants()
@@ -27,7 +27,7 @@ impl Workspace {
             .map(|p| p.settings().placement.position)
             .map(|p| DVec2::new(p.x, p.z))
             .collect();
-        // Another scattering of the same plant falls otherwise.
+        // Another scattering of the same plant gives other places.
         let mut stream =
             seed.child(u64::from(wanted.plant.0)).child(taken.len() as u64).stream(Draw::Scatter);
         let spacing = if wanted.spacing_m.is_finite() { wanted.spacing_m.clamp(1e-3, 1e4) } else { 1.0 };
@@ -47,7 +47,7 @@ impl Workspace {
             let own = (wanted.kinds > 0).then(|| seed.child(kind + 1));
             match self.copy_to(wanted.plant, place, own.map(PlantCommand::SetSeed)) {
                 Ok(()) => {}
-                // The scene is full: those before it stand.
+                // The scene is full: earlier copies stay.
                 Err(CommandError::Full(_)) if k > 0 => break,
                 Err(e) => {
                     self.editor.cancel_gesture();
@@ -71,9 +71,9 @@ impl Workspace {
         [Some(PlantCommand::Place(place)), seed].into_iter().flatten().try_for_each(|c| self.set(c, copy))
     }
 
-    /// Asks a plant for what it may have already.
+    /// Runs a command whose setting the plant may already have.
     fn set(&mut self, command: PlantCommand, plant: PlantId) -> Result<(), CommandError> {
-        match self.editor.run(command.of(plant)) {
+        match self.editor.run(command.for_plant(plant)) {
             Err(CommandError::Nothing(_)) => Ok(()),
             done => done,
         }

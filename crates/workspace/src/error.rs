@@ -1,10 +1,12 @@
-//! Why something was not done.
+//! Reasons why a request was refused.
 
 use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, ProjectError};
 use burgeon::formats::{DrawingError, DrawingFormat, Foreign, ModelError, ModelFormat, WriteError};
-use burgeon::{SceneError, Slip, SplitError, Stopped, TreeError};
+use burgeon::light::LightError;
+use burgeon::skin::SolidError;
+use burgeon::{LightSourceError, SceneError, Slip, SplitError, Stopped, TreeError, WrongEngineFile};
 
-/// Why a workspace refused; it is as it was.
+/// Reason why a workspace refused a request; the workspace is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorkspaceError {
@@ -17,10 +19,10 @@ pub enum WorkspaceError {
     /// No preset has that key.
     #[error("there is no tree {0:?}")]
     NoTree(String),
-    /// None of the strokes is there.
+    /// None of the strokes exists.
     #[error("no stroke is selected")]
     NoStroke,
-    /// The text is no drawing.
+    /// The text is not a drawing.
     #[error("the clipboard holds no drawing")]
     NoClipboard,
     /// The file has no drawing.
@@ -29,7 +31,7 @@ pub enum WorkspaceError {
     /// Every stroke is empty.
     #[error("there is no stroke in it that can be used")]
     NoUsableStroke,
-    /// Nothing says what the file is.
+    /// The kind of the file is unknown.
     #[error(
         "this is no file that Burgeon reads: give a project (.burgeon), a drawing ({}), marks of a leaf (.csv), a tree or \
          flower (.toml) or a model ({})",
@@ -43,7 +45,7 @@ pub enum WorkspaceError {
     /// The bytes are not UTF-8.
     #[error(transparent)]
     NotText(#[from] core::str::Utf8Error),
-    /// An obstacle that is no model.
+    /// The obstacle is not a model.
     #[error("an obstacle is a model: give a {} file", ModelFormat::read_endings())]
     ObstacleFile,
     /// A model without triangles.
@@ -52,13 +54,28 @@ pub enum WorkspaceError {
     /// There is nothing to export.
     #[error("there is no plant yet: draw at least one line, or add a tree, a leaf or a flower")]
     NothingMade,
-    /// A model that is only shown is no plant and no drawing.
+    /// A model that is only shown is neither a plant nor a drawing.
     #[error("models are not written as {0:?}")]
     Format(&'static str),
+    /// A body for a printer is made of one plant.
+    #[error("a print is one body: choose one plant, not the whole scene")]
+    PrintsOne,
+    /// No body for a printer can be made.
+    #[error(transparent)]
+    Solid(#[from] SolidError),
+    /// A program is not given files of this format.
+    #[error(transparent)]
+    EngineFile(#[from] WrongEngineFile),
+    /// Sky and sun give no light.
+    #[error(transparent)]
+    Source(LightSourceError),
+    /// Light cannot be followed.
+    #[error(transparent)]
+    Light(LightError),
     /// The tool needs a plant.
     #[error("there is no plant to shape yet")]
     NothingToShape,
-    /// No copy has room where it was asked for.
+    /// No copy has room at the requested place.
     #[error("no copy has room there: make the place larger or the spacing smaller")]
     NowhereToStand,
     /// The document refused.
@@ -88,16 +105,16 @@ pub enum WorkspaceError {
     /// The record of gestures is too long.
     #[error("the record of gestures is too long: at most {most} steps")]
     RecordLong {
-        /// Most steps.
+        /// Largest number of steps.
         most: usize,
     },
-    /// The project in a record of gestures is no base64.
+    /// The project in a record of gestures is not base64.
     #[error("the project in the record of gestures is not in base64")]
     RecordProject,
     /// The numbers in a record of gestures are not those of its plants.
     #[error("the numbers in the record of gestures are not those of the plants of its project")]
     RecordNumbers,
-    /// A record keeps an edit that no gesture made.
+    /// A record refers to an edit that no gesture made.
     #[error("the record of gestures keeps an edit that none of its gestures made")]
     RecordKeeps,
     /// The plant cannot be made.
@@ -106,16 +123,16 @@ pub enum WorkspaceError {
     /// The drawing stays one plant.
     #[error(transparent)]
     Split(#[from] SplitError),
-    /// The picture is no photograph that is taken.
+    /// The photograph is not accepted.
     #[error(transparent)]
     Photo(#[from] PhotoError),
-    /// The picture is none that organs can wear.
+    /// The picture cannot be a material of organs.
     #[error(transparent)]
     Picture(#[from] PictureError),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Several files do not go into one.
+    /// Several files do not fit into one.
     #[error(transparent)]
     Archive(#[from] ArchiveError),
     /// Stopped from outside: a newer change, or the person.
@@ -153,16 +170,19 @@ burgeon::coded!(WorkspaceError {
     Self::NothingMade => "nothing-made" {},
     Self::Format(format) => "no-such-export" { format },
     Self::NothingToShape => "nothing-to-shape" {},
+    Self::PrintsOne => "prints-one" {},
+    Self::Solid(why) => "no-print" { why },
+    Self::EngineFile(WrongEngineFile { wanted, given }) => "engine-file" { wanted = wanted.join(" / ."), given },
     Self::NowhereToStand => "nowhere-to-stand" {},
-    Self::Law(why) => "law" { why = &Slip::of(&why.to_string()) => Slip },
-    Self::Record(why) => "record" { why = &Slip::of(&why.to_string()) => Slip },
+    Self::Law(why) => "law" { why = &Slip::from_message(&why.to_string()) => Slip },
+    Self::Record(why) => "record" { why = &Slip::from_message(&why.to_string()) => Slip },
     Self::RecordForm(form) => "record-form" { form },
     Self::RecordLong { most } => "record-long" { most },
     Self::RecordProject => "record-project" {},
     Self::RecordNumbers => "record-numbers" {},
     Self::RecordKeeps => "record-keeps" {},
     Self::Cancelled => "cancelled" {},
-    Self::Message(why) => "message" { why = &Slip::of(why) => Slip },
+    Self::Message(why) => "message" { why = &Slip::from_message(why) => Slip },
     Self::Internal(why) => "internal" { why },
 } wraps {
     Self::Command(e) => e, CommandError;
@@ -176,5 +196,7 @@ burgeon::coded!(WorkspaceError {
     Self::Photo(e) => e, PhotoError;
     Self::Picture(e) => e, PictureError;
     Self::Write(e) => e, WriteError;
+    Self::Source(e) => e, LightSourceError;
+    Self::Light(e) => e, LightError;
     Self::Archive(e) => e, ArchiveError;
 });

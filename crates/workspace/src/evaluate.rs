@@ -1,8 +1,8 @@
-//! What is shown: plants made again where something changed, their meshes as columns.
+//! Evaluation: makes changed plants again and offers their meshes as columns.
 
 use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
-use burgeon::ink::Drawing;
+use burgeon::ink::{Drawing, StrokeClass};
 use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
 use burgeon::{
@@ -13,17 +13,17 @@ use burgeon::{
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
 use crate::{Column, ObstacleView, PlantView, SceneView, WarningView, Workspace, WorkspaceError};
 
-/// Most trees that are previewed before they are made: of a wood the first are enough to see that it comes.
+/// Most trees that are previewed before they are made: in a wood the first ones are enough to show that it is coming.
 const MOST_PREVIEWED: usize = 8;
 
 impl Workspace {
-    /// Brings every plant that is shown up to date. While a stroke is drawn only the current one, coarser.
+    /// Brings every visible plant up to date. While a stroke is drawn, only the current one, coarser.
     ///
-    /// A plant that cannot be made says why in its view; the others are made all the same. `run.cancel` tells how far the
-    /// plant that is being made is.
+    /// A plant that cannot be made gives the reason in its view; the others are made all the same. `run.cancel` reports
+    /// the progress of the current plant.
     ///
     /// # Errors
-    /// [`WorkspaceError::Cancelled`]; what was made before it stays.
+    /// [`WorkspaceError::Cancelled`]; plants made before it stay.
     pub fn evaluate(&mut self, run: &Run<'_>) -> Result<SceneView, WorkspaceError> {
         self.previewed = false;
         self.coarse.clear();
@@ -39,15 +39,18 @@ impl Workspace {
                     self.previewed = true;
                     let evaluator = self.preview.get_or_insert_with(Evaluator::previewing);
                     let mut drawing = plant.drawing();
-                    // With each stroke anew: what came before may be understood otherwise by now.
+                    // Compared again with each stroke: earlier strokes may be understood otherwise by now.
                     let now = Some((id, self.editor.revision()));
                     if self.followed != now
                         && self.scene.evaluator(id).is_some_and(|whole| evaluator.follow(whole, &drawing))
                     {
                         self.followed = now;
                     }
-                    drawing.strokes.extend(self.draft.clone());
-                    let item = preview(evaluator, plant, &drawing, run);
+                    let draft = self.draft.clone();
+                    let row = u32::try_from(drawing.strokes.len()).ok();
+                    let said = row.zip(draft.as_ref().and_then(|d| d.class));
+                    drawing.strokes.extend(draft.map(|d| d.stroke));
+                    let item = preview(evaluator, plant, (&drawing, said), run);
                     item.map(|item| self.preview_item = Some(item)).map_err(SceneError::from)
                 } else if drawn && self.outcomes.contains_key(&id) {
                     continue; // the pen goes first
@@ -75,16 +78,16 @@ impl Workspace {
         Ok(self.view())
     }
 
-    /// Whether [`Workspace::evaluate`] leaves it to [`Workspace::measure`] how true plants are to drawings of very many
-    /// strokes: they are seen in half of the time. Default: no.
+    /// Sets whether [`Workspace::evaluate`] leaves the fidelity of plants to drawings of very many strokes to
+    /// [`Workspace::measure`], which shows them in half of the time. Default: no.
     pub fn measure_later(&mut self, later: bool) {
         self.scene.set_measuring_later(later);
     }
 
-    /// The view again, with what the last evaluation left for later; none where it left nothing.
+    /// Computes what the last evaluation left for later and returns the view again; `None` where it left nothing.
     ///
     /// # Errors
-    /// [`WorkspaceError::Cancelled`]: it is still left for later.
+    /// [`WorkspaceError::Cancelled`]: the measurement is still left for later.
     pub fn measure(&mut self, run: &Run<'_>) -> Result<Option<SceneView>, WorkspaceError> {
         if self.guest.is_some() || self.draft.is_some() || self.held.is_some() {
             return Ok(None);
@@ -99,13 +102,13 @@ impl Workspace {
         Ok(any.then(|| self.view()))
     }
 
-    /// Trees that [`Workspace::evaluate`] is going to grow, much coarser, if they are large: they are seen long before the
-    /// whole is there. Their columns can be asked for until the next evaluation, which grows nothing again.
+    /// Makes much coarser previews of large trees that [`Workspace::evaluate`] is going to grow: they are seen long
+    /// before the whole is ready. Their columns are available until the next evaluation, which grows nothing again.
     ///
     /// They are in no document, file or report. Empty while somebody draws or shapes, which has previews of its own.
     ///
     /// # Errors
-    /// [`WorkspaceError::Cancelled`]. What else is wrong with a plant, [`Workspace::evaluate`] says.
+    /// [`WorkspaceError::Cancelled`]. [`Workspace::evaluate`] reports all other faults of a plant.
     pub fn preview_trees(&mut self, run: &Run<'_>) -> Result<Vec<PlantView>, WorkspaceError> {
         self.coarse.clear();
         if self.guest.is_some() || self.draft.is_some() || self.held.is_some() {
@@ -124,9 +127,9 @@ impl Workspace {
                 Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
                 Ok(None) | Err(_) => continue,
             };
-            views.push(PlantView::of(id, &model, &mut self.textures));
+            views.push(PlantView::from_model(id, &model, &mut self.textures));
             self.coarse.insert(id, model);
-            // What comes next is new to the shell.
+            // The next meshes are new to the shell.
             self.meshes.insert(id, None);
         }
         Ok(views)
@@ -137,7 +140,7 @@ impl Workspace {
         let mut textures = std::mem::take(&mut self.textures);
         let mut given = LiteMap::new();
         if let Some(model) = &self.guest {
-            let mut seen = PlantView::of(GUEST, model, &mut textures);
+            let mut seen = PlantView::from_model(GUEST, model, &mut textures);
             seen.fresh = true;
             view.guest = Some(seen);
         }
@@ -145,11 +148,12 @@ impl Workspace {
             let id = plant.id();
             let previewed = self.previewed && self.current() == Some(id);
             let model = self.model(id);
-            // None for what the page shows nothing of, or a preview: whatever comes next is new to it.
+            // `None` for a preview and for a plant of which the page shows nothing: its next meshes are new to the
+            // page.
             let shown = !previewed && model.is_some();
             let revision = self.scene.get(id).map(|p| self.levels.name(id, p.revision)).filter(|_| shown);
             let mut seen =
-                model.map_or_else(|| PlantView::empty(id), |m| PlantView::of(id, m, &mut textures));
+                model.map_or_else(|| PlantView::empty(id), |m| PlantView::from_model(id, m, &mut textures));
             seen.fresh = previewed || model.is_none() || self.meshes.get(&id) != Some(&revision);
             seen.mesh = revision;
             seen.item = self.item(id);
@@ -168,10 +172,10 @@ impl Workspace {
             seen.front = front.filter(|_| model.is_some()).map(Into::into);
             seen.days = self.scene.days(id, self.editor.document());
             if let Some(Outcome::Failed(why)) = self.outcomes.get(&id) {
-                seen.error = Some(Refusal::of(why));
+                seen.error = Some(Refusal::from_error(why));
             }
             if let Maker::Tree(t) = &plant.settings().maker {
-                seen.obstacles = t.obstacles.iter().map(|o| ObstacleView::of(&o.shape)).collect();
+                seen.obstacles = t.obstacles.iter().map(|o| ObstacleView::from_obstacle(&o.shape)).collect();
             }
             given.insert(id, revision);
             view.plants.push(seen);
@@ -192,7 +196,7 @@ impl Workspace {
         self.scene.get(id).map(|p| p.report())
     }
 
-    /// What is shown of a plant.
+    /// Returns the model that is shown of a plant.
     pub(crate) fn model(&self, id: PlantId) -> Option<&Model> {
         if id == GUEST {
             return self.variant.as_ref().or(self.guest.as_ref());
@@ -206,22 +210,22 @@ impl Workspace {
         if self.previewed && self.current() == Some(id) {
             return self.preview.as_ref()?.model();
         }
-        self.levels.of(id).map(|l| &l.model).or_else(|| self.scene.get(id).map(|p| p.model))
+        self.levels.get(id).map(|l| &l.model).or_else(|| self.scene.get(id).map(|p| p.model))
     }
 
-    /// A column of a mesh of the last view; empty for what is not there.
+    /// Returns a column of a mesh of the last view; empty for a mesh that does not exist.
     pub fn column(&self, plant: PlantId, part: usize, column: Column) -> &[f32] {
         let part = self.model(plant).and_then(|m| m.parts.get(part));
-        part.map_or(&[], |p| column.of(&p.mesh))
+        part.map_or(&[], |p| column.values(&p.mesh))
     }
 
-    /// Three indices a triangle of a mesh of the last view.
+    /// Returns the indices of a mesh of the last view, three for each triangle.
     pub fn indices(&self, plant: PlantId, part: usize) -> &[u32] {
         let part = self.model(plant).and_then(|m| m.parts.get(part));
         part.map_or(&[], |p| p.mesh.triangles.as_flattened())
     }
 
-    /// Corners of an obstacle that is a mesh, three to a triangle; empty for others.
+    /// Returns the corners of an obstacle that is a mesh, three for each triangle; empty for others.
     pub fn obstacle(&self, plant: PlantId, row: usize) -> Vec<f32> {
         let plant = self.editor.document().plant(plant);
         let Some(Maker::Tree(tree)) = plant.map(|p| &p.settings().maker) else { return Vec::new() };
@@ -232,16 +236,16 @@ impl Workspace {
         corners.flat_map(|p| p.as_vec3().to_array()).collect()
     }
 
-    /// RGBA bytes of a texture by its number in the last view; empty for one that is not in it.
+    /// Returns the RGBA bytes of a texture by its number in the last view; empty for one that is not in it.
     pub fn texture(&self, number: u32) -> &[u8] {
         self.textures.get(number).map_or(&[], |t| &t.pixels)
     }
 
-    /// Makes the current plant of another seed for a preview, a drawing with fewer triangles;
-    /// [`Workspace::end_variant`] goes back.
+    /// Makes the current plant of another seed for a preview, with fewer triangles if it is a drawing;
+    /// [`Workspace::end_variant`] returns to the plant itself.
     ///
     /// # Errors
-    /// [`WorkspaceError::Cancelled`], or why there is none.
+    /// [`WorkspaceError::Cancelled`], or the reason why it cannot be made.
     pub fn variant(&mut self, seed: Seed, detail: f64, run: &Run<'_>) -> Result<PlantView, WorkspaceError> {
         let id = self.must()?;
         let mut document = Editor::new(self.editor.document().clone());
@@ -249,24 +253,24 @@ impl Workspace {
             Ok(()) | Err(document::CommandError::Nothing(_)) => Ok(()),
             Err(e) => Err(e),
         };
-        change(document::PlantCommand::SetSeed(seed).of(id))?;
+        change(document::PlantCommand::SetSeed(seed).for_plant(id))?;
         let coarse = coarser(self.editor.document(), id, detail);
         coarse.map_or(Ok(()), change)?;
         let mut aside = self.scene.aside(document.document().plant(id));
         aside.update(id, document.document(), run)?;
         let model = aside.get(id).map(|p| p.model.clone()).ok_or(WorkspaceError::NothingMade)?;
-        let seen = PlantView::of(GUEST, &model, &mut self.textures);
+        let seen = PlantView::from_model(GUEST, &model, &mut self.textures);
         self.variant = Some(model);
         Ok(seen)
     }
 
-    /// Goes back to the plant itself.
+    /// Returns to the plant itself.
     pub fn end_variant(&mut self) {
         self.variant = None;
     }
 
-    /// Pairs of points of the current plant's axes: x, y, z and order of each; then of its blades, from root to tip,
-    /// with "order" 100 (leaves) or 101 (petals). Empty while a model file is shown.
+    /// Returns pairs of points of the current plant's axes: x, y, z and order of each; then of its blades, from root to
+    /// tip, with "order" 100 (leaves) or 101 (petals). Empty while a model file is shown.
     pub fn skeleton(&self) -> Vec<f32> {
         let id = self.current().filter(|&id| self.guest.is_none() && self.model(id).is_some());
         let previewed = self.preview.as_ref().filter(|_| self.previewed).and_then(Evaluator::plant);
@@ -294,24 +298,24 @@ impl Workspace {
         out
     }
 
-    /// About how many bytes the results of all plants take.
+    /// Estimates how many bytes the results of all plants take.
     pub fn kept_bytes(&self) -> usize {
         self.scene.kept().map(|(_, bytes)| bytes).sum()
     }
 
-    /// How many bytes the results of all plants may take before no further plant is made: it says so, and is made when
-    /// there is room again. Default [`crate::SHOWN_BYTES`].
+    /// Sets how many bytes the results of all plants may take before no further plant is made: such a plant reports the
+    /// limit, and is made when there is room again. Default [`crate::SHOWN_BYTES`].
     pub fn show_at_most(&mut self, bytes: usize) {
         self.kept.most = bytes;
     }
 
-    /// How many bytes the results of all plants may take before those of plants that are hidden or deleted go. What is
-    /// shown always stays. From the next evaluation on; default [`crate::KEPT_BYTES`].
+    /// Sets how many bytes the results of all plants may take before those of hidden or deleted plants are dropped.
+    /// Visible results always stay. From the next evaluation on; default [`crate::KEPT_BYTES`].
     pub fn keep_at_most(&mut self, bytes: usize) {
         self.kept.limit = bytes;
     }
 
-    /// Forgets what is not shown until the rest fits. A plant that comes back is made again, with the same bits.
+    /// Drops results that are not shown until the rest fits. A plant that returns is made again, with the same bits.
     pub(crate) fn make_room(&mut self) {
         let plants = self.editor.document().plants().iter();
         let shown = set_of(plants.filter(|p| !p.settings().hidden).map(DocumentPlant::id));
@@ -324,7 +328,7 @@ impl Workspace {
         let mut aside: Vec<(u64, PlantId)> = aside.map(|(id, _)| (last(id), id)).collect();
         sort_by_key(&mut aside, |row| *row);
         for (_, id) in aside {
-            // Counted anew: what a copy shares stays as long as the copy.
+            // Counted anew: results that a copy shares stay as long as the copy.
             if self.kept_bytes() <= self.kept.limit {
                 break;
             }
@@ -336,14 +340,17 @@ impl Workspace {
     }
 }
 
-/// The plant of a stroke that is still being drawn.
+/// Makes the plant of a stroke that is still being drawn.
 fn preview(
     evaluator: &mut Evaluator,
     plant: &DocumentPlant,
-    drawing: &Drawing,
+    (drawing, said): (&Drawing, Option<(u32, StrokeClass)>),
     run: &Run<'_>,
 ) -> Result<ItemReport, MakeError> {
     let mut options = SketchOptions::of_plant(plant);
+    if let Some((row, class)) = said {
+        options.classes.insert(row, class);
+    }
     // Fast while the pen is down, fine when it is lifted.
     options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
     evaluator.update(drawing, &options, plant.settings().seed, run)

@@ -2,26 +2,31 @@
 
 use burgeon::document::{self, Document, DocumentPlant, PlantId};
 use burgeon::formats::{
-    self, DrawingFormat, ExportSpec, ModelFormat, PngCache, Room, StructureFormat, gltf_files, model_files,
+    self, DrawingFormat, ExportSpec, ModelFormat, Packing, PngCache, Room, StructureFormat, gltf_files,
+    model_files,
 };
-use burgeon::mesh::{Model, Standing};
+use burgeon::mesh::{Copies, Model, Standing};
 use burgeon::plant::Plant;
-use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, scene_model, standing};
+use burgeon::skin::{SolidError, SolidSpec};
+use burgeon::{
+    Engine, ExportChoice, PrintedPlant, Report, Run, SceneEvaluator, Unit, UpAxis, scene_model, standing,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::export_preview::PrintFigures;
 use crate::{Workspace, WorkspaceError};
 
-/// Levels of detail that an export may have.
+/// Most levels of detail of an export.
 pub(crate) const MOST_LEVELS: u32 = 4;
 
-/// Pixels along a side of the picture with views from all sides.
+/// Side of the picture with views from all sides, pixels.
 const IMPOSTOR: u32 = 1024;
 
-/// A name and the bytes under it.
+/// Name and bytes of a file.
 pub type NamedFile = (String, Vec<u8>);
 
-/// A format that something is written as, by its word.
+/// Format of an export, by its word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ExportFormat {
@@ -40,10 +45,10 @@ impl Default for ExportFormat {
 }
 
 impl ExportFormat {
-    /// The format of models that it is.
+    /// Returns the format of models that it is.
     ///
     /// # Errors
-    /// [`WorkspaceError::Format`] for one that holds no models.
+    /// [`WorkspaceError::Format`] for a format that holds no models.
     pub(crate) fn model(self) -> Result<ModelFormat, WorkspaceError> {
         match self {
             Self::Model(format) => Ok(format),
@@ -57,7 +62,7 @@ impl ExportFormat {
     }
 }
 
-/// What is exported, and how it is written.
+/// Subject and format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExportRequest {
@@ -69,16 +74,25 @@ pub struct ExportRequest {
     pub up: UpAxis,
     /// The unit of the file.
     pub unit: Unit,
-    /// The whole scene, else the current plant.
+    /// Whether the whole scene is exported, else the current plant.
     pub whole: bool,
-    /// How wind moves drawings and trees, where the format has room for it.
+    /// Whether drawings and trees get wind columns, where the format has room for them.
     pub wind: bool,
-    /// All levels in one file, where it is glTF (`MSFT_lod`); else each has its own.
+    /// Whether all levels go into one file, for glTF (`MSFT_lod`); else each has its own.
     pub one_file: bool,
-    /// Joints and an animation that sways, where it is glTF; each level then has a file of its own.
+    /// Whether to write joints and an animation that sways, for glTF; each level then has a file of its own.
     pub sway: bool,
-    /// One more level, the last: views from all sides in one picture, where it is glTF.
+    /// Whether to add a last level, views from all sides in one picture, for glTF.
     pub impostor: bool,
+    /// Whether columns are compressed (`EXT_meshopt_compression`), for glTF without joints.
+    pub packed: bool,
+    /// Whether leaves of one form are written once, for glTF (`EXT_mesh_gpu_instancing`); they do not move in the wind.
+    pub instances: bool,
+    /// Whether parts and materials are named after their plant.
+    pub named: bool,
+    /// The program that the files are for: [`Engine::Print`] gets one closed body, the others what the settings above
+    /// say.
+    pub engine: Option<Engine>,
 }
 
 impl Default for ExportRequest {
@@ -95,18 +109,38 @@ impl Default for ExportRequest {
             one_file,
             sway,
             impostor,
+            packed: false,
+            instances: false,
+            named: false,
+            engine: None,
         }
     }
 }
 
 impl ExportRequest {
-    /// Whether what is written says how wind moves it.
+    /// Whether the written meshes have wind columns.
     pub(crate) fn blown(&self) -> bool {
-        (self.wind && self.format.holds(Room::Wind)) || self.sways()
+        let moves = !self.has_copies() && !self.is_print();
+        (moves && self.wind && self.format.holds(Room::Wind)) || self.sways()
     }
 
     fn sways(&self) -> bool {
-        self.sway && self.format.holds(Room::Joints)
+        self.sway && self.format.holds(Room::Joints) && !self.has_copies()
+    }
+
+    /// Whether leaves of one form are written once.
+    pub(crate) fn has_copies(&self) -> bool {
+        self.instances && self.format.holds(Room::Instances)
+    }
+
+    fn packing(&self) -> Option<Packing> {
+        let packs = self.packed && self.format.holds(Room::Packing) && !self.sways();
+        packs.then_some(Packing::Compressed)
+    }
+
+    /// Whether one closed body is written.
+    pub(crate) fn is_print(&self) -> bool {
+        self.engine == Some(Engine::Print)
     }
 
     /// Whether the level after the others is views from all sides.
@@ -115,9 +149,22 @@ impl ExportRequest {
     }
 
     /// Whether each level is written as one model of the whole scene.
-    fn joined(&self) -> bool {
+    pub(crate) fn is_joined(&self) -> bool {
         let one = self.format.holds(Room::Levels) && self.one_file && self.levels > 1;
-        self.sways() || self.ends_far() || one
+        self.sways() || self.ends_far() || one || self.packing().is_some() || self.has_copies()
+    }
+
+    /// Returns the program whose file has the levels of one plant as named nodes, with shapes for collisions.
+    pub(crate) fn nodes(&self) -> Option<Engine> {
+        let choice = ExportChoice {
+            packing: self.packing(),
+            sways: self.sways(),
+            is_one_file: self.one_file,
+            is_still: self.has_copies() || self.ends_far(),
+            ..ExportChoice::default()
+        };
+        let is_glb = self.format.holds(Room::Levels) && !self.whole;
+        self.engine.filter(|engine| is_glb && engine.has_nodes(&choice))
     }
 
     pub(crate) fn spec(&self) -> ExportSpec {
@@ -126,11 +173,11 @@ impl ExportRequest {
 }
 
 impl Workspace {
-    /// What is shown as files: several for formats with textures beside them, levels of detail, and structures of several
-    /// plants.
+    /// Returns the shown plants as files: several for formats with separate textures, for levels of detail, and for
+    /// structures of several plants.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: when there is nothing to export.
+    /// [`WorkspaceError`]: for example when there is nothing to export.
     pub fn export(
         &mut self,
         wanted: &ExportRequest,
@@ -151,7 +198,35 @@ impl Workspace {
         }
         self.draft = None;
         let only = if wanted.whole { None } else { Some(self.must()?) };
+        if wanted.is_print() {
+            let format = wanted.format.model()?;
+            let made = print(&mut self.scene, self.editor.document(), only, run)?;
+            self.printed = Some(PrintFigures::from_print(&made));
+            return written(&made.model, format, "plant", &wanted.spec());
+        }
         export(&mut self.scene, self.editor.document(), only, wanted, run)
+    }
+
+    /// Returns figures of the last body that was made for a printer.
+    pub const fn printed(&self) -> Option<PrintFigures> {
+        self.printed
+    }
+}
+
+/// Makes one closed body of the only exported plant.
+pub(crate) fn print(
+    scene: &mut SceneEvaluator,
+    document: &Document,
+    only: Option<PlantId>,
+    run: &Run<'_>,
+) -> Result<PrintedPlant, WorkspaceError> {
+    let made = made(scene, document, only, run)?;
+    let [plant] = made[..] else { return Err(WorkspaceError::PrintsOne) };
+    let shown = scene.get(plant.id()).ok_or(WorkspaceError::NothingMade)?;
+    let whole = shown.plant.ok_or(WorkspaceError::NothingMade)?;
+    match burgeon::print_plant(whole, shown.model, &SolidSpec::default(), run) {
+        Err(SolidError::Cancelled(_)) => Err(WorkspaceError::Cancelled),
+        other => Ok(other?),
     }
 }
 
@@ -164,7 +239,7 @@ fn export(
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
     let mut aside;
     let scene = if wanted.blown() {
-        // What is shown stays without: its meshes would be half as large again.
+        // The shown meshes stay without wind columns, which would make them half as large again.
         aside = scene.aside(document.plants().iter().filter(chosen(only)));
         aside.set_wind(true);
         &mut aside
@@ -180,18 +255,23 @@ fn export(
     }
     let (format, spec) = (wanted.format.model()?, wanted.spec());
     let levels = wanted.levels.clamp(1, MOST_LEVELS);
-    if wanted.joined() {
-        let models: Result<Vec<Model>, WorkspaceError> = (0..levels)
+    if let (Some(engine), [plant]) = (wanted.nodes(), &made[..]) {
+        let levels: Result<Vec<Level>, WorkspaceError> =
+            (0..levels).map(|level| Level::make(scene, &made, (level, wanted), run)).collect();
+        return engine_nodes(scene, (engine, format), plant.id(), &levels?);
+    }
+    if wanted.is_joined() {
+        let models: Result<Vec<Joined>, WorkspaceError> = (0..levels)
             .map(|level| {
-                let at = Level::of(scene, &made, level, run)?;
-                Ok(scene_model(document.name(), &at.standing(&made, only.is_some())))
+                let at = Level::make(scene, &made, (level, wanted), run)?;
+                Ok(at.joined(document.name(), &made, only.is_some()))
             })
             .collect();
         return joined(models?, wanted, run);
     }
     let mut files = Vec::new();
     for level in 0..levels {
-        let at = Level::of(scene, &made, level, run)?;
+        let at = Level::make(scene, &made, (level, wanted), run)?;
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
         let standing = at.standing(&made, only.is_some());
         files.extend(scene_files(document.name(), &standing, format, &stem, &spec, &mut PngCache::new())?);
@@ -199,56 +279,93 @@ fn export(
     Ok(files)
 }
 
-/// Levels as glTF, each of one model: in one file or several, with joints, with views from all sides as the last.
-fn joined(
-    mut models: Vec<Model>,
+/// Returns the levels of one plant as named nodes of one file, with shapes for collisions.
+pub(crate) fn engine_nodes(
+    scene: &SceneEvaluator,
+    (engine, format): (Engine, ModelFormat),
+    plant: PlantId,
+    levels: &[Level],
+) -> Result<Vec<NamedFile>, WorkspaceError> {
+    let shown = scene.get(plant).and_then(|made| made.plant).ok_or(WorkspaceError::NothingMade)?;
+    let models: Vec<&Model> = levels.iter().filter_map(|level| level.models.first()).collect();
+    let mut out = Vec::new();
+    burgeon::write_engine_glb(engine, shown, &models, &mut PngCache::new(), &mut out)?;
+    gltf_named(out, format, "plant")
+}
+
+/// A level as one model of the whole scene, and what it is without leaves of one form, where these are written once.
+#[derive(Debug)]
+pub(crate) struct Joined {
+    pub(crate) model: Model,
+    pub(crate) copies: Option<(Model, Vec<Copies>)>,
+}
+
+impl Joined {
+    fn level(&self) -> formats::Level<'_> {
+        match &self.copies {
+            Some((model, copies)) => formats::Level { model, copies },
+            None => formats::Level::plain(&self.model),
+        }
+    }
+
+    /// Returns its file as binary glTF.
+    fn glb(&self, wanted: &ExportRequest, cache: &mut PngCache) -> Result<Vec<u8>, WorkspaceError> {
+        let mut out = Vec::new();
+        let gust = burgeon::skin::gust(&self.model);
+        match burgeon::skin::sway(&self.model, gust).filter(|_| wanted.sways()) {
+            Some(rig) => formats::write_glb_rigged(&self.model, &rig, cache, &mut out)?,
+            None => formats::write_glb_levels(&[self.level()], wanted.packing(), cache, &mut out)?,
+        }
+        Ok(out)
+    }
+}
+
+/// Returns levels as glTF, each of one model: in one file or several, with joints, with views from all sides as the
+/// last.
+pub(crate) fn joined(
+    mut models: Vec<Joined>,
     wanted: &ExportRequest,
     run: &Run<'_>,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
     if wanted.ends_far()
         && let Some(finest) = models.first()
-        && let Some(far) = far(finest, run)?
+        && let Some(far) = far(&finest.model, run)?
     {
-        models.push(far);
+        models.push(Joined { model: far, copies: None });
     }
     let format = wanted.format.model()?;
     let mut cache = PngCache::new();
-    if wanted.one_file && !wanted.sways() {
+    if wanted.one_file && models.len() > 1 && !wanted.sways() {
         let mut out = Vec::new();
-        let levels: Vec<formats::Level<'_>> = models.iter().map(formats::Level::plain).collect();
-        formats::write_glb_levels(&levels, None, &mut cache, &mut out)?;
+        let levels: Vec<formats::Level<'_>> = models.iter().map(Joined::level).collect();
+        formats::write_glb_levels(&levels, wanted.packing(), &mut cache, &mut out)?;
         return gltf_named(out, format, "plant");
     }
     let mut files = Vec::new();
     for (level, model) in models.iter().enumerate() {
-        let mut out = Vec::new();
-        let gust = burgeon::skin::gust(model);
-        match burgeon::skin::sway(model, gust).filter(|_| wanted.sways()) {
-            Some(rig) => formats::write_glb_rigged(model, &rig, &mut cache, &mut out)?,
-            None => formats::write_glb_with(model, &mut cache, &mut out)?,
-        }
+        let out = model.glb(wanted, &mut cache)?;
         let stem = if models.len() == 1 { "plant".into() } else { format!("plant_LOD{level}") };
         files.extend(gltf_named(out, format, &stem)?);
     }
     Ok(files)
 }
 
-/// A binary glTF in a format of its family, with the names of its files.
+/// Returns a binary glTF in a format of its family, with the names of its files.
 fn gltf_named(glb: Vec<u8>, format: ModelFormat, stem: &str) -> Result<Vec<NamedFile>, WorkspaceError> {
     Ok(gltf_files(glb, format, stem)?.named(format!("{stem}.{}", format.extension())))
 }
 
-/// Views of a model from all sides; none of nothing.
+/// Returns views of a model from all sides; `None` for an empty one.
 pub(crate) fn far(model: &Model, run: &Run<'_>) -> Result<Option<Model>, WorkspaceError> {
     burgeon::render::impostor(model, IMPOSTOR, run).map_err(|_cancelled| WorkspaceError::Cancelled)
 }
 
-/// Which plants are written: all that are not hidden, or one.
+/// Returns a filter for the exported plants: all that are not hidden, or one.
 pub(crate) fn chosen(only: Option<PlantId>) -> impl Fn(&&DocumentPlant) -> bool {
     move |p| only.map_or(!p.settings().hidden, |id| p.id() == id)
 }
 
-/// Brings what is written up to date; plants that there is nothing of yet are left out of a scene.
+/// Brings the exported plants up to date; a scene leaves out plants that have no result yet.
 pub(crate) fn made<'a>(
     scene: &mut SceneEvaluator,
     document: &'a Document,
@@ -267,20 +384,22 @@ pub(crate) fn made<'a>(
     if made.is_empty() { Err(WorkspaceError::NothingMade) } else { Ok(made) }
 }
 
-/// The models of a level of detail. Copies that share a model share its coarser copies, too.
+/// Models of a level of detail. Copies that share a model share its coarser copies, too.
 #[derive(Debug, Default)]
 pub(crate) struct Level {
     pub(crate) models: Vec<Model>,
+    /// Each model without leaves of one form, and these; empty unless they are written once.
+    copies: Vec<(Model, Vec<Copies>)>,
     /// The row of each plant's model.
     pub(crate) rows: Vec<usize>,
 }
 
 impl Level {
-    /// Level 0 is the finest.
-    pub(crate) fn of(
+    /// Makes a level as `wanted` has it; level 0 is the finest.
+    pub(crate) fn make(
         scene: &SceneEvaluator,
         plants: &[&DocumentPlant],
-        level: u32,
+        (level, wanted): (u32, &ExportRequest),
         run: &Run<'_>,
     ) -> Result<Self, WorkspaceError> {
         let mut revisions: Vec<u64> = Vec::new();
@@ -291,24 +410,72 @@ impl Level {
             at.rows.push(known.unwrap_or(at.models.len()));
             if known.is_none() {
                 revisions.push(revision);
-                at.models.push(scene.at_level(plant, level, run)?);
+                at.push(scene, plant, (level, wanted), run)?;
             }
         }
         Ok(at)
     }
 
-    /// Each plant where it stands, or one where it was made.
+    /// Adds the model of a plant.
+    fn push(
+        &mut self,
+        scene: &SceneEvaluator,
+        plant: &DocumentPlant,
+        (level, wanted): (u32, &ExportRequest),
+        run: &Run<'_>,
+    ) -> Result<(), WorkspaceError> {
+        let made = scene.level(plant, level, run)?;
+        let finest = scene.get(plant.id()).filter(|_| level == 0).and_then(|p| p.plant.zip(p.owners));
+        let mut split = wanted.has_copies().then(|| match finest {
+            Some((whole, layout)) => Some(burgeon::skin::copies(whole, &made.model, layout)),
+            None => made.copies(),
+        });
+        let mut model = made.model;
+        if wanted.named {
+            let name = &plant.settings().name;
+            let rest = split.iter_mut().flatten().map(|(rest, _)| rest);
+            rest.chain([&mut model]).for_each(|m| burgeon::name_after(name, m));
+        }
+        self.copies.extend(split.take().map(|split| split.unwrap_or_else(|| (model.clone(), Vec::new()))));
+        self.models.push(model);
+        Ok(())
+    }
+
+    /// Returns each plant in its place, or a single one at its origin.
     pub(crate) fn standing<'a>(&'a self, plants: &[&'a DocumentPlant], home: bool) -> Vec<Standing<'a>> {
+        self.stand(&self.models, plants, home)
+    }
+
+    /// Returns these models, one for each of the own, in the places of the plants.
+    fn stand<'a>(
+        &'a self,
+        models: impl IntoIterator<Item = &'a Model>,
+        plants: &[&'a DocumentPlant],
+        home: bool,
+    ) -> Vec<Standing<'a>> {
+        let models: Vec<&Model> = models.into_iter().collect();
         let rows = plants.iter().zip(&self.rows);
         let stands = rows.filter_map(|(plant, &row)| {
-            let model = self.models.get(row)?;
+            let model = *models.get(row)?;
             Some(if home { Standing::home(&plant.settings().name, model) } else { standing(plant, model) })
         });
         stands.collect()
     }
+
+    /// Joins the plants into one model, and once more without leaves of one form where these are written once.
+    pub(crate) fn joined(&self, name: &str, plants: &[&DocumentPlant], home: bool) -> Joined {
+        let model = scene_model(name, &self.standing(plants, home));
+        let copies = (!self.copies.is_empty()).then(|| {
+            let rest = self.stand(self.copies.iter().map(|(rest, _)| rest), plants, home);
+            let copies: Vec<&[Copies]> =
+                self.rows.iter().filter_map(|row| Some(&*self.copies.get(*row)?.1)).collect();
+            (scene_model(name, &rest), burgeon::scene_copies(&rest, &copies))
+        });
+        Joined { model, copies }
+    }
 }
 
-/// The files of a scene. glTF has each model once, however often it stands there; others have room for one model.
+/// Returns the files of a scene. glTF has each model once, however often it occurs; others have room for one model.
 pub(crate) fn scene_files(
     name: &str,
     plants: &[Standing<'_>],
@@ -325,7 +492,7 @@ pub(crate) fn scene_files(
     written(&scene_model(name, plants), format, stem, spec)
 }
 
-/// A file a plant.
+/// Returns one file for each plant.
 fn structure<'a>(
     plants: impl Iterator<Item = (PlantId, Option<&'a Plant>)>,
     extension: &str,
@@ -341,17 +508,17 @@ fn structure<'a>(
     Ok(files)
 }
 
-/// One file as it is, several as a zip; formats with files beside theirs always as a zip, so that the name of what is saved
-/// is known before their textures are.
+/// Returns one file unchanged, several as a zip; formats with separate files always as a zip, so that the name of the
+/// saved file is known before its textures are.
 ///
 /// # Errors
-/// [`WorkspaceError::Archive`] for what no zip holds.
+/// [`WorkspaceError::Archive`] for files that no zip holds.
 pub fn packed(format: ExportFormat, mut files: Vec<NamedFile>) -> Result<Vec<u8>, WorkspaceError> {
     let names_others = format.model().is_ok_and(|format| !format.row().beside.is_empty());
     if files.len() == 1 && !names_others { Ok(files.swap_remove(0).1) } else { Ok(document::pack(&files)?) }
 }
 
-/// The files of a model.
+/// Returns the files of a model.
 pub(crate) fn written(
     model: &Model,
     format: ModelFormat,

@@ -1,13 +1,34 @@
-//! What is kept of an export that is shown before it is written.
+//! State kept for the preview of an export, and what became of the last print.
 
-use burgeon::SceneEvaluator;
 use burgeon::formats::PngCache;
 use burgeon::mesh::Model;
+use burgeon::skin::SolidSpec;
+use burgeon::{PrintedPlant, SceneEvaluator};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 #[derive(Debug, Default)]
 pub(crate) struct ExportPreview {
-    /// With wind, of the document at this revision: another level is not skinned twice.
+    /// Evaluation with wind, of the document at this revision: another level is not skinned twice.
     pub(crate) blown: Option<(u64, SceneEvaluator)>,
     pub(crate) models: Vec<Model>,
     pub(crate) pngs: PngCache,
+}
+
+/// A body for a printer beside its plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct PrintFigures {
+    /// Number of times that the plant is larger.
+    pub scale: f64,
+    /// Least thickness of any part, millimetres: thinner ones are thickened.
+    pub wall_mm: f64,
+    /// Number of surfaces that were left out, as they hang on nothing or lie within the body.
+    pub loose: u32,
+}
+
+impl PrintFigures {
+    pub(crate) fn from_print(made: &PrintedPlant) -> Self {
+        let wall_mm = SolidSpec::default().wall_m * 1e3;
+        Self { scale: made.scale, wall_mm, loose: u32::try_from(made.loose).unwrap_or(u32::MAX) }
+    }
 }

@@ -1,4 +1,4 @@
-//! An export that is shown before it is written: its meshes at one level of detail, and figures that were counted.
+//! Preview of an export before it is written: its meshes at one level of detail, and counted figures.
 
 use std::sync::Arc;
 
@@ -9,44 +9,47 @@ use burgeon::{Run, scene_model};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::export::{Level, MOST_LEVELS, chosen, far, made, packed, scene_files, written};
-use crate::export_preview::ExportPreview;
+use crate::export::{
+    Level, MOST_LEVELS, chosen, engine_nodes, far, joined, made, packed, print, scene_files, written,
+};
+use crate::export_preview::{ExportPreview, PrintFigures};
 use crate::view::GUEST;
 use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
 
-/// What an export would write of one level of detail.
+/// Contents of an export at one level of detail.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExportView {
     /// The level; 0 is the finest.
     pub level: u32,
-    /// Bytes of the file with this level alone, or of its zip: it was written and counted.
+    /// Bytes of the file with this level alone, or of its zip, counted from the written file.
     pub file_bytes: u64,
-    /// Textures in it or beside it.
+    /// Number of textures in it or next to it.
     pub textures: u32,
     /// Their bytes as PNG.
     pub texture_bytes: u64,
-    /// Meshes that a program draws to show all of it.
+    /// Number of meshes that a program draws to show all of it.
     pub draws: u32,
-    /// What it holds, by what it is of.
+    /// Its contents by kind.
     pub parts: Vec<PartFigures>,
     /// Its meshes; copies share theirs. See [`Workspace::exported_column`].
     pub models: Vec<PlantView>,
-    /// Which of them each plant is; none where the one model is all that there is, as it stands.
+    /// The mesh of each plant; empty where the one model stands for the whole scene.
     pub plants: Vec<ExportedPlant>,
 }
 
 /// Figures of all meshes of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct PartFigures {
-    /// What they are of: bark, leaf, petal, ...
+    /// Kind of the meshes: bark, leaf, petal, ...
     pub kind: &'static str,
-    /// Triangles, those of copies as often as they stand there.
+    /// Triangles; those of copies count each time.
     pub triangles: u64,
-    /// Vertices, those of copies as often as they stand there.
+    /// Vertices; those of copies count each time.
     pub vertices: u64,
-    /// Meshes that a program draws, those of copies as often as they stand there; 0 where the file is a single mesh.
+    /// Meshes that a program draws; those of copies count each time; 0 where the file is a single mesh.
     pub draws: u32,
-    /// Bytes of columns and corners, as binary glTF and graphics cards hold them; of copies in binary glTF once.
+    /// Bytes of columns and indices, as binary glTF and graphics cards hold them; those of copies in binary glTF count
+    /// once.
     pub bytes: u64,
 }
 
@@ -60,9 +63,9 @@ pub struct ExportedPlant {
 }
 
 impl Workspace {
-    /// What [`Workspace::export`] would write of one level (0 to 3, 4 for the views from all sides where `wanted` has them), to
-    /// be seen and counted. `wanted.levels` is not read.
-    /// Its meshes stay until the next preview or [`Workspace::end_preview`].
+    /// Makes the files that [`Workspace::export`] would write of one level (0 to 3, or 4 for the views from all sides
+    /// where `wanted` has them), to be shown and counted. `wanted.levels` is ignored. Its meshes stay until the next
+    /// preview or [`Workspace::end_preview`].
     ///
     /// # Cost
     /// That of the export: the file is written, counted and thrown away.
@@ -88,6 +91,14 @@ impl Workspace {
         }
         let only = if wanted.whole { None } else { Some(self.must()?) };
         let document = self.editor.document();
+        if wanted.is_print() {
+            let made = print(&mut self.scene, document, only, run)?;
+            self.printed = Some(PrintFigures::from_print(&made));
+            let bytes = packed(wanted.format, written(&made.model, format, "plant", &spec)?)?.len();
+            preview.models.push(made.model);
+            let rows: Vec<_> = only.map(|id| (id, 0)).into_iter().collect();
+            return self.counted(preview, (0, bytes), format, &rows);
+        }
         let scene = if wanted.blown() {
             let now = self.editor.revision();
             if preview.blown.as_ref().is_none_or(|(then, _)| *then != now) {
@@ -101,7 +112,7 @@ impl Workspace {
             &mut self.scene
         };
         let plants = made(scene, document, only, run)?;
-        let at = Level::of(scene, &plants, if from_afar { 0 } else { level }, run)?;
+        let at = Level::make(scene, &plants, (if from_afar { 0 } else { level }, wanted), run)?;
         if from_afar {
             let finest = scene_model(document.name(), &at.standing(&plants, only.is_some()));
             let far = far(&finest, run)?.ok_or(WorkspaceError::NothingMade)?;
@@ -110,15 +121,22 @@ impl Workspace {
             let rows: Vec<_> = only.map(|id| (id, 0)).into_iter().collect();
             return self.counted(preview, (MOST_LEVELS, bytes), format, &rows);
         }
-        let standing = at.standing(&plants, only.is_some());
-        let files = scene_files(document.name(), &standing, format, "plant", &spec, &mut preview.pngs)?;
+        let one = ExportRequest { levels: 1, impostor: false, sway: false, ..*wanted };
+        let files = if let (Some(engine), [plant]) = (one.nodes(), &plants[..]) {
+            engine_nodes(scene, (engine, format), plant.id(), core::slice::from_ref(&at))?
+        } else if one.is_joined() {
+            joined(vec![at.joined(document.name(), &plants, only.is_some())], &one, run)?
+        } else {
+            let standing = at.standing(&plants, only.is_some());
+            scene_files(document.name(), &standing, format, "plant", &spec, &mut preview.pngs)?
+        };
         let bytes = packed(wanted.format, files)?.len();
         let rows: Vec<_> = plants.iter().zip(&at.rows).map(|(p, &row)| (p.id(), row)).collect();
         preview.models = at.models;
         self.counted(preview, (level, bytes), format, &rows)
     }
 
-    /// The figures, and the views of the models that are shown.
+    /// Counts the figures, and makes the views of the models.
     fn counted(
         &mut self,
         mut preview: ExportPreview,
@@ -139,7 +157,8 @@ impl Workspace {
         }
         let count = u32::try_from(textures.len()).unwrap_or(u32::MAX);
         let (parts, draws) = figures(&preview.models, rows, format);
-        let models = preview.models.iter().map(|m| PlantView::of(GUEST, m, &mut self.textures)).collect();
+        let models =
+            preview.models.iter().map(|m| PlantView::from_model(GUEST, m, &mut self.textures)).collect();
         self.export_preview = Some(preview);
         Ok(ExportView {
             level,
@@ -153,25 +172,25 @@ impl Workspace {
         })
     }
 
-    /// A column of a mesh of the last preview of an export; empty for what is not there.
+    /// Returns a column of a mesh of the last preview of an export; empty for a mesh that does not exist.
     pub fn exported_column(&self, model: usize, part: usize, column: Column) -> &[f32] {
         let model = self.export_preview.as_ref().and_then(|l| l.models.get(model));
-        model.and_then(|m| m.parts.get(part)).map_or(&[], |p| column.of(&p.mesh))
+        model.and_then(|m| m.parts.get(part)).map_or(&[], |p| column.values(&p.mesh))
     }
 
-    /// Three indices a triangle of a mesh of the last preview of an export.
+    /// Returns the indices of a mesh of the last preview of an export, three for each triangle.
     pub fn exported_indices(&self, model: usize, part: usize) -> &[u32] {
         let model = self.export_preview.as_ref().and_then(|l| l.models.get(model));
         model.and_then(|m| m.parts.get(part)).map_or(&[], |p| p.mesh.triangles.as_flattened())
     }
 
-    /// Forgets the export that was shown.
+    /// Drops the preview of an export.
     pub fn end_preview(&mut self) {
         self.export_preview = None;
     }
 }
 
-/// The textures of a material that a file has.
+/// Returns the textures of a material that a file has.
 fn pictures(m: &Material, format: ModelFormat) -> impl Iterator<Item = &Arc<Texture>> {
     let height = m.maps.height.as_ref().filter(|_| format.holds(Room::Heights));
     let is_through = format.holds(Room::Translucence) && m.double_sided && m.translucency > 0.0;
@@ -180,12 +199,12 @@ fn pictures(m: &Material, format: ModelFormat) -> impl Iterator<Item = &Arc<Text
     all.into_iter().flatten().filter(move |_| format.holds(Room::Textures))
 }
 
-/// Figures by kind, in the order of the parts, and how many meshes are drawn.
+/// Returns figures by kind, in the order of the parts, and how many meshes are drawn.
 fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> (Vec<PartFigures>, u32) {
     let single = !format.holds(Room::Parts);
     let mut all: Vec<PartFigures> = Vec::new();
     for (k, model) in models.iter().enumerate() {
-        // Without a plant of its own it is all that there is.
+        // A model without a plant of its own is the whole scene.
         let places =
             rows.iter().filter(|(_, row)| *row == k).count().max(usize::from(rows.is_empty())) as u64;
         for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
@@ -211,7 +230,7 @@ fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> 
     (all, draws)
 }
 
-/// What a mesh takes in binary glTF.
+/// Returns the bytes of a mesh in binary glTF.
 fn bytes(mesh: &TriMesh) -> u64 {
     let floats = 3 * mesh.positions.len()
         + 3 * mesh.normals.len()
@@ -233,13 +252,13 @@ mod tests {
     use super::*;
     use crate::{ExportFormat, NewMaker};
 
-    /// The JSON of a binary glTF file.
+    /// Reads the JSON of a binary glTF file.
     fn gltf(glb: &[u8]) -> Value {
         let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
         serde_json::from_slice(&glb[20..20 + length]).unwrap()
     }
 
-    /// What a binary glTF file holds: triangles and meshes that are drawn, bytes of meshes, textures and their bytes.
+    /// Counts in a binary glTF file: triangles and meshes that are drawn, bytes of meshes, textures and their bytes.
     fn held(glb: &[u8]) -> [u64; 5] {
         let file = gltf(glb);
         let rows = |key: &str| file[key].as_array().cloned().unwrap_or_default();
@@ -257,16 +276,21 @@ mod tests {
         [triangles, draws, columns, rows("images").len() as u64, pictures]
     }
 
-    fn told(view: &ExportView) -> [u64; 5] {
+    fn totals(view: &ExportView) -> [u64; 5] {
         let sum = |f: fn(&PartFigures) -> u64| view.parts.iter().map(f).sum::<u64>();
         [sum(|p| p.triangles), view.draws.into(), sum(|p| p.bytes), view.textures.into(), view.texture_bytes]
     }
 
-    #[test]
-    fn the_figures_are_those_of_the_file() {
+    fn with_bush() -> Workspace {
         let mut s = Workspace::default();
         let bush = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
         s.open("bush.toml", bush.as_bytes(), 0, false).unwrap();
+        s
+    }
+
+    #[test]
+    fn the_figures_are_those_of_the_file() {
+        let mut s = with_bush();
         let bush = s.current().unwrap();
         for k in 1..3 {
             s.run(SceneCommand::Duplicate(bush, DVec3::X * f64::from(k))).unwrap();
@@ -279,7 +303,7 @@ mod tests {
             let view = s.preview_export(&wanted, level, &Run::plain()).unwrap();
             let files = s.export(&wanted, &Run::plain()).unwrap();
             let (_, file) = &files[level as usize];
-            assert_eq!(told(&view), held(file), "wind {wind}, level {level}");
+            assert_eq!(totals(&view), held(file), "wind {wind}, level {level}");
             assert_eq!(view.file_bytes, file.len() as u64);
             assert_eq!((view.models.len(), view.plants.len()), (2, 4), "copies share their meshes");
             let (positions, blown) = (
@@ -288,7 +312,7 @@ mod tests {
             );
             assert!(positions > 0 && blown == if wind { positions / 3 * 4 } else { 0 });
             assert!(!s.exported_indices(0, 0).is_empty());
-            let now = told(&view);
+            let now = totals(&view);
             if level > 0 {
                 assert!(now[0] < before[0], "a level has fewer triangles: {now:?}");
             }
@@ -297,7 +321,7 @@ mod tests {
         s.end_preview();
         assert!(s.exported_column(0, 0, Column::Positions).is_empty());
         // Hidden plants are not written; one plant alone is.
-        s.run(PlantCommand::Hide(true).of(bush)).unwrap();
+        s.run(PlantCommand::Hide(true).for_plant(bush)).unwrap();
         let all = ExportRequest { whole: true, ..ExportRequest::default() };
         assert_eq!(s.preview_export(&all, 0, &Run::plain()).unwrap().plants.len(), 3);
         let one = s.preview_export(&ExportRequest::default(), 0, &Run::plain()).unwrap();
@@ -316,12 +340,12 @@ mod tests {
             let view = s.preview_export(&wanted, MOST_LEVELS, &Run::plain()).unwrap();
             let files = s.export(&wanted, &Run::plain()).unwrap();
             let (_, file) = files.last().unwrap();
-            assert_eq!((told(&view), view.file_bytes), (held(file), file.len() as u64));
-            // A scene of several is one thing, which no plant stands for.
+            assert_eq!((totals(&view), view.file_bytes), (held(file), file.len() as u64));
+            // A scene of several plants is one model, which no plant stands for.
             assert_eq!(view.plants.len(), usize::from(!whole));
             assert_eq!(s.exported_indices(0, 0).len(), 12, "two upright pictures");
         }
-        // Without them the finest levels end before.
+        // Without them the finest levels are the last.
         let plain = s.preview_export(&ExportRequest::default(), MOST_LEVELS, &Run::plain()).unwrap();
         assert_eq!(plain.level, MOST_LEVELS - 1);
     }
@@ -345,15 +369,72 @@ mod tests {
         let [ply, stl] = [ExportFormat::Model(ModelFormat::Ply), ExportFormat::Model(ModelFormat::Stl)]
             .map(|f| look(f, true));
         assert_eq!((obj.draws, obj.textures), (glb.draws, glb.textures));
-        assert_eq!(told(&obj)[2], 2 * told(&glb)[2], "others hold a copy twice, and no wind");
+        assert_eq!(totals(&obj)[2], 2 * totals(&glb)[2], "others hold a copy twice, and no wind");
         assert_eq!((ply.draws, ply.textures, stl.draws), (1, 0, 1));
         let vertices = |v: &ExportView| v.parts.iter().map(|p| p.vertices).sum::<u64>();
-        assert_eq!(vertices(&stl), 3 * told(&stl)[0]);
+        assert_eq!(vertices(&stl), 3 * totals(&stl)[0]);
         assert_eq!(vertices(&ply), vertices(&glb));
         let mtg = ExportRequest {
             format: ExportFormat::Structure(StructureFormat::Mtg),
             ..ExportRequest::default()
         };
         assert!(matches!(s.preview_export(&mtg, 0, &Run::plain()), Err(WorkspaceError::Format("mtg"))));
+    }
+
+    #[test]
+    fn packed_files_and_leaves_of_one_form_are_those_of_the_writers() {
+        let mut s = with_bush();
+        let only = s.current().unwrap();
+        let packed = ExportRequest { packed: true, ..ExportRequest::default() };
+        let copies = ExportRequest { instances: true, ..packed };
+        let mut sizes = Vec::new();
+        for wanted in [ExportRequest::default(), packed, copies] {
+            let view = s.preview_export(&wanted, 0, &Run::plain()).unwrap();
+            let files = s.export(&wanted, &Run::plain()).unwrap();
+            assert_eq!(view.file_bytes, files[0].1.len() as u64);
+            sizes.push(files[0].1.len());
+        }
+        assert!(3 * sizes[1] < sizes[0] && sizes[2] < sizes[1], "{sizes:?}");
+        let file = gltf(&s.export(&copies, &Run::plain()).unwrap()[0].1);
+        assert!(file["extensionsUsed"].to_string().contains("EXT_mesh_gpu_instancing"));
+        let mut direct = Vec::new();
+        let made = s.scene.get(only).unwrap();
+        let (rest, leaves) = burgeon::skin::copies(made.plant.unwrap(), made.model, made.owners.unwrap());
+        let rest = Model { name: s.document().name().to_owned(), ..rest };
+        let level = burgeon::formats::Level { model: &rest, copies: &leaves };
+        let packing = Some(burgeon::formats::Packing::Compressed);
+        let mut cache = burgeon::formats::PngCache::new();
+        burgeon::formats::write_glb_levels(&[level], packing, &mut cache, &mut direct).unwrap();
+        assert!(direct == s.export(&copies, &Run::plain()).unwrap()[0].1, "the file of the command");
+        // Two plants: each form of leaf in the places of both.
+        s.run(SceneCommand::Duplicate(only, DVec3::X)).unwrap();
+        let both = s.export(&ExportRequest { whole: true, ..copies }, &Run::plain()).unwrap();
+        let places = |glb: &[u8]| -> u64 {
+            let file = gltf(glb);
+            let nodes = file["nodes"].as_array().cloned().unwrap_or_default();
+            let rows = nodes.iter().filter_map(|n| {
+                let row = n["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"].as_u64()?;
+                file["accessors"][usize::try_from(row).unwrap()]["count"].as_u64()
+            });
+            rows.sum()
+        };
+        assert_eq!(places(&both[0].1), 2 * places(&direct));
+    }
+
+    #[test]
+    fn a_print_is_one_body_of_one_plant() {
+        let mut s = Workspace::default();
+        let maker = NewMaker::Flower("tulip".into());
+        s.act(&crate::Action::Add { name: "a tulip".into(), maker }).unwrap();
+        let ask = crate::EngineAsk::new(burgeon::Engine::Print, ModelFormat::Stl);
+        let print = ask.settle().unwrap().request;
+        let view = s.preview_export(&print, 0, &Run::plain()).unwrap();
+        let files = s.export(&print, &Run::plain()).unwrap();
+        assert_eq!((view.models.len(), view.file_bytes), (1, files[0].1.len() as u64));
+        assert!(s.printed().is_some_and(|p| p.scale > 0.0 && p.wall_mm > 0.0), "{:?}", s.printed());
+        let tulip = s.current().unwrap();
+        s.run(SceneCommand::Duplicate(tulip, DVec3::X)).unwrap();
+        let all = ExportRequest { whole: true, ..print };
+        assert!(matches!(s.export(&all, &Run::plain()), Err(WorkspaceError::PrintsOne)));
     }
 }

@@ -20,36 +20,36 @@ use serde::Serialize;
 
 use crate::{WarningView, Workspace, WorkspaceError};
 
-/// What a file was.
+/// Kind of an opened file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FileKind {
-    /// Took the document's place.
+    /// A project, which replaced the document.
     Project,
-    /// Took the document's place.
+    /// A drawing, which replaced the document.
     Drawing,
-    /// Is shown.
+    /// A model, which is shown.
     Model,
-    /// Marks that went to a leaf.
+    /// Measurements, which went to a leaf.
     Leaf,
     /// A new tree.
     Tree,
     /// A new flower that opens.
     Flower,
-    /// A growth law that went to the current flower.
+    /// A growth law, which went to the current flower.
     Law,
 }
 
-/// What was opened.
+/// Result of opening a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Opened {
-    /// What it was.
+    /// Kind of the file.
     pub kind: FileKind,
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Every drawing of the file, at most a thousand.
     pub names: Vec<String>,
-    /// What is odd about it.
+    /// Warnings about it.
     pub warnings: Vec<WarningView>,
 }
 
@@ -59,15 +59,15 @@ impl Opened {
     }
 }
 
-/// Drawings of a file that are offered for choice.
+/// Most drawings of a file that are offered for choice.
 const OFFERED: usize = 1000;
 
 impl Workspace {
-    /// Opens any file that is read. A project or drawing takes the document's place (one step of undo, or none with
+    /// Opens any file in a known format. A project or drawing replaces the document (one step of undo, or none with
     /// `fresh`), a model is only shown. `row` picks a drawing of an ndjson file.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: what is wrong with the file and what to do.
+    /// [`WorkspaceError`]: the fault of the file and its remedy.
     pub fn open(
         &mut self,
         file_name: &str,
@@ -81,7 +81,7 @@ impl Workspace {
         let model = ModelFormat::from_extension(extension);
         let model = model.or_else(|| ModelFormat::sniff(bytes)).filter(|_| drawing.is_none());
         let holds = |word: &[u8]| bytes.windows(word.len()).take(4096).any(|w| w == word);
-        // Projects are archives; compressed drawings may be read.
+        // Projects are archives; compressed drawings are accepted.
         let ours = |foreign: &Foreign| matches!(foreign, Foreign::Project | Foreign::Zip | Foreign::Gzip);
         if let Some(foreign) = Foreign::sniff(bytes).filter(|foreign| !is("burgeon") && !ours(foreign)) {
             return Err(WorkspaceError::Foreign(foreign));
@@ -108,7 +108,7 @@ impl Workspace {
             Ok(Opened::new(FileKind::Tree, spec.name))
         } else if is("json") && holds(b"burgeon.law/") {
             let law = through_json::from_text(core::str::from_utf8(bytes)?).map_err(WorkspaceError::Law)?;
-            self.run(FlowerCommand::SetLaw(Some(Arc::new(law))).of(self.must()?))?;
+            self.run(FlowerCommand::SetLaw(Some(Arc::new(law))).for_plant(self.must()?))?;
             Ok(Opened::new(FileKind::Law, stem))
         } else if let Some(format) = model {
             self.show_model(format, stem, bytes)
@@ -125,8 +125,8 @@ impl Workspace {
         }
     }
 
-    /// What the document leaves to the sender of a command: that measurements make a leaf, and that the balls that are moved
-    /// are its own.
+    /// Checks what the document leaves to the sender of a command: that measurements make a leaf, and that the balls
+    /// that are moved are its own.
     pub(crate) fn check(&self, command: &document::Command) -> Result<(), WorkspaceError> {
         match command {
             document::Command::Leaf(_, document::LeafCommand::SetData(data)) => check_marks(data),
@@ -143,7 +143,7 @@ impl Workspace {
         }
     }
 
-    /// Measurements of a leaf: they go to the leaf that is chosen if it has none, else to a new plant.
+    /// Opens measurements of a leaf: they go to the chosen leaf if it has none, else to a new plant.
     fn open_leaf(&mut self, stem: &str, file_name: &str, bytes: &[u8]) -> Result<Opened, WorkspaceError> {
         let data = LeafData { name: file_name.into(), text: core::str::from_utf8(bytes)?.into() };
         check_marks(&data)?;
@@ -151,7 +151,7 @@ impl Workspace {
             .current_plant()
             .filter(|p| matches!(&p.settings().maker, Maker::Leaf(l) if l.data.text.is_empty()));
         match waiting.map(DocumentPlant::id) {
-            Some(id) => self.editor.run(document::LeafCommand::SetData(data).of(id))?,
+            Some(id) => self.editor.run(document::LeafCommand::SetData(data).for_plant(id))?,
             None => {
                 self.add_plant(stem, Maker::Leaf(Box::new(LeafMaker { data, ..LeafMaker::default() })))?
             }
@@ -160,7 +160,7 @@ impl Workspace {
         Ok(Opened::new(FileKind::Leaf, stem))
     }
 
-    /// Takes the document's place: one step of undo, or `fresh`, without a history.
+    /// Replaces the document: one step of undo, or `fresh`, without a history.
     pub(crate) fn replace(&mut self, document: Document, fresh: bool) -> Result<(), WorkspaceError> {
         self.editor.cancel_gesture();
         if fresh {
@@ -188,10 +188,10 @@ impl Workspace {
         Ok(opened)
     }
 
-    /// A model file as an obstacle of the current tree.
+    /// Adds a model file as an obstacle of the current tree.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: what is wrong with the file, or that no tree is chosen.
+    /// [`WorkspaceError`]: the fault of the file, or that no tree is chosen.
     pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), WorkspaceError> {
         let (stem, extension) = file_name.rsplit_once('.').unwrap_or((file_name, ""));
         let format = ModelFormat::from_extension(extension).or_else(|| ModelFormat::sniff(bytes));
@@ -206,34 +206,34 @@ impl Workspace {
         }
         let shape = Arc::new(Obstacle::Mesh { vertices, triangles });
         let new = document::NamedObstacle { name: stem.into(), shape };
-        Ok(self.editor.run(TreeCommand::AddObstacle(new).of(self.must()?))?)
+        Ok(self.editor.run(TreeCommand::AddObstacle(new).for_plant(self.must()?))?)
     }
 
-    /// A small project for a link: rounded, without times and photographs.
+    /// Returns a small project for a link: rounded, without times and photographs.
     ///
     /// # Errors
-    /// [`WorkspaceError::Project`]; never, but for our own bugs.
+    /// [`WorkspaceError::Project`], only by a bug of ours.
     pub fn share(&self) -> Result<Vec<u8>, WorkspaceError> {
         Ok(document::write_project(&self.editor.document().compact(), burgeon::VERSION)?)
     }
 
-    /// The document as a `.burgeon` file.
+    /// Returns the document as a `.burgeon` file.
     ///
     /// # Errors
-    /// [`WorkspaceError::Project`]; never, but for our own bugs.
+    /// [`WorkspaceError::Project`], only by a bug of ours.
     pub fn save(&self) -> Result<Vec<u8>, WorkspaceError> {
         Ok(document::write_project(self.editor.document(), burgeon::VERSION)?)
     }
 }
 
-/// Whether measurements make a leaf.
+/// Checks that measurements make a leaf.
 fn check_marks(data: &LeafData) -> Result<(), WorkspaceError> {
     let (marks, _) = leaf_marks(data, &LeafSpec::default())?;
     marks.complete(&mut Report::default()).map_err(|e| SceneError::from(LeafError::from(e)))?;
     Ok(())
 }
 
-/// The drawing of this row among those that can be read, and the names of all.
+/// Returns the drawing of this row among the readable ones, and the names of all.
 fn pick(
     bytes: &[u8],
     format: DrawingFormat,

@@ -1,16 +1,16 @@
-//! How long results are kept: as long as there is room. Those that were not shown for longest go first.
+//! Retention of results: they are kept as long as there is room, and those not shown for longest are dropped first.
 
 use burgeon::LiteMap;
 use burgeon::document::PlantId;
 
-/// How much is kept unless [`crate::Workspace::keep_at_most`] says otherwise: 256 MiB, a quarter of what a tab may ask for.
+/// Default of [`crate::Workspace::keep_at_most`]: 256 MiB, a quarter of the memory that a tab may request.
 pub const KEPT_BYTES: usize = 256 << 20;
 
-/// How much all results may take before no further plant is made, unless [`crate::Workspace::show_at_most`] says
-/// otherwise: 2.5 GiB. A page can address 4 GiB; one more plant may need 1 GiB while it is made.
+/// Default of [`crate::Workspace::show_at_most`], the size of all results at which no further plant is made: 2.5 GiB. A
+/// page can address 4 GiB; one more plant may need 1 GiB while it is made.
 pub const SHOWN_BYTES: usize = 5 << 29;
 
-/// When each plant was shown last.
+/// The last time that each plant was shown.
 #[derive(Debug)]
 pub(crate) struct Kept {
     pub(crate) limit: usize,

@@ -1,6 +1,6 @@
-//! Levels of detail that keep what is shown within a number of triangles: for a headset, which draws all twice.
+//! Levels of detail that keep the view within a number of triangles: for a headset, which draws everything twice.
 //!
-//! `most triangles + plants as they were made -> the finest levels that fit -> what the shell shows of them`
+//! `most triangles + plants as made -> the finest levels that fit -> the part of them that the shell shows`
 
 use burgeon::document::PlantId;
 use burgeon::{LiteMap, PlantLevel, Run};
@@ -12,23 +12,24 @@ use crate::shown::Shown;
 const COARSEST: u32 = 6;
 
 impl Workspace {
-    /// From the next evaluation on shows at most so many triangles of all plants together, the largest coarser than the
-    /// others; none: all of each. Documents, files, reports and edits are of the finest.
+    /// Limits the triangles of all plants together from the next evaluation on, the largest coarser than the others;
+    /// `None` shows all of each. Documents, files, reports and edits use the finest level.
     ///
-    /// Not guaranteed: of very many plants even the coarsest levels may have more.
+    /// Not guaranteed: very many plants may exceed the limit even at the coarsest level.
     pub fn set_most_triangles(&mut self, most: Option<u64>) {
         self.levels.most = most;
     }
 
-    /// Makes the levels that would be shown of the plants as they were made last, and keeps them beside what is shown until
-    /// they are wished for: whoever enters a headset waits for no mesh then. They take as much memory as they will take there.
+    /// Makes the levels that would be shown of the plants as they were made last, and keeps them alongside the current
+    /// ones until they are needed: so nobody who enters a headset waits for a mesh. They take as much memory as they
+    /// will there.
     pub fn ready_levels(&mut self, most: u64, run: &Run<'_>) {
         if self.levels.most.is_none() {
             self.levels.ready = self.levels_within(most, run);
         }
     }
 
-    /// Makes the levels that are shown. A level that cannot be made leaves its plant as it is.
+    /// Makes the shown levels. A plant whose level cannot be made stays as it is.
     pub(crate) fn make_levels(&mut self, run: &Run<'_>) {
         self.levels.shown = match self.levels.most {
             Some(most) => self.levels_within(most, run),
@@ -56,7 +57,7 @@ impl Workspace {
             let coarser = rows.iter_mut().filter(|r| r.level < COARSEST).max_by_key(|r| r.triangles);
             let Some(row) = coarser else { break };
             let known = before.remove(&row.id).filter(|s| s.revision == row.revision);
-            // What was shown before is most likely what fits now, too.
+            // The level shown before is the most likely one to fit now.
             row.level = known.as_ref().map_or(row.level + 1, |s| s.level.max(row.level + 1));
             let again = known.filter(|s| s.level == row.level).map(|s| s.made);
             let made = again.or_else(|| {

@@ -1,25 +1,28 @@
-//! What a person does with a document: draws, drafts, shapes by hand, looks, opens and exports. Any shell may hold one.
+//! Work on a document: drawing, drafts, shaping by hand, viewing, opening and exporting. Any shell may hold one.
 //!
 //! `Command | Action | stroke | pointer -> Workspace -> DocumentState, SceneView, columns of meshes, files`
 //!
 //! | module | owns |
 //! |---|---|
-//! | `workspace` | [`Workspace`]: the document with its history, the plant that is chosen, the draft |
+//! | `workspace` | [`Workspace`]: the document with its history, the chosen plant, the draft |
 //! | `files` | files in and out |
 //! | `export` | models and structures as files |
-//! | `exported` | exports that are shown before they are written |
+//! | `exported` | previews of exports |
+//! | `engines` | settings of exports for the programs that plants go to |
 //! | `evaluate` | plants made and shown, meshes as columns |
-//! | `kept` | how long results are kept |
+//! | `kept` | retention of results |
 //! | `levels`, `shown` | levels of detail for shells that draw little |
+//! | `lit` | plants coloured by the light that they absorb |
 //! | `record` | gestures as a file, and their replay |
 //! | `shaping` | tools that shape a plant by hand |
-//! | `state` | what a shell shows of the document |
-//! | `view` | what a shell shows of the plants |
+//! | `state` | the document as a shell shows it |
+//! | `view` | the plants as a shell shows them |
 //! | `error` | [`WorkspaceError`] |
 //!
-//! It reads no clock and opens no file: what computes takes a [`burgeon::Run`], files come and go as bytes.
+//! It reads no clock and opens no file: computations take a [`burgeon::Run`], and files are passed as bytes.
 
 mod copies;
+mod engines;
 mod error;
 mod evaluate;
 mod export;
@@ -29,6 +32,7 @@ mod files;
 mod held;
 mod kept;
 mod levels;
+mod lit;
 mod record;
 mod scatter;
 mod shaping;
@@ -40,12 +44,15 @@ mod workspace;
 #[cfg(test)]
 mod tests;
 
+pub use engines::{EngineAnswer, EngineAsk, EngineSet};
 pub use error::WorkspaceError;
 pub use export::{ExportFormat, ExportRequest, NamedFile, packed};
+pub use export_preview::PrintFigures;
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use held::CarriedPose;
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
+pub use lit::{LightAsk, LightPlace, LightView};
 pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
 pub use scatter::{Ground, Scatter, stand};
 pub use shaping::{Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};

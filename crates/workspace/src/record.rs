@@ -1,6 +1,6 @@
-//! What hands did, as a file: the same gestures again, without a hand, a page or a headset.
+//! Records of gestures, as a file: they replay the same gestures without a hand, a page or a headset.
 //!
-//! `JSON -> GestureRecord -> each step by the same tools -> the document, seen as often as it was seen`
+//! `JSON -> GestureRecord -> each step by the same tools -> the document, evaluated as often as in the record`
 
 use std::sync::Arc;
 
@@ -22,16 +22,17 @@ pub const MOST_STEPS: usize = 300_000;
 /// Most bytes of a record that are read.
 const MOST_BYTES: usize = 256 << 20;
 
-/// What hands did to the plants of a session, in its order. Poses are in the coordinates of the plant, metres.
+/// Gestures on the plants of a session, in their order. Poses are in the coordinates of the plant, metres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GestureRecord {
     /// Always [`GESTURES_SCHEMA`].
     pub schema: String,
-    /// The project as the hands found it: a `.burgeon` file in base64. Without one, steps go on from what is open.
+    /// The project at the start of the session: a `.burgeon` file in base64. Without it, steps continue from the open
+    /// document.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub project: Option<String>,
-    /// The numbers of the project's plants, by which steps name them. Without, the file's own are meant.
+    /// Numbers of the project's plants, by which steps name them. Without them, those of the file apply.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub numbers: Option<PlantNumbers>,
     /// The plant that was worked on first.
@@ -39,7 +40,7 @@ pub struct GestureRecord {
     pub plant: Option<PlantId>,
     /// The steps.
     pub steps: Vec<GestureStep>,
-    /// The digest of the plant that was worked on last, as it was seen then.
+    /// Digest of the plant that was worked on last, at its last evaluation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub digest: Option<String>,
 }
@@ -48,61 +49,61 @@ pub struct GestureRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GestureStep {
-    /// When, ms since the first. It decides nothing but how fast pictures of the record follow one another.
+    /// Time in ms since the first step. It only sets the pace at which pictures of the record follow one another.
     #[serde(default)]
     pub ms: u32,
-    /// What.
+    /// The deed.
     pub did: GestureDeed,
 }
 
-/// What was done in a step.
+/// A deed of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GestureDeed {
     /// A hand with a tool.
     Hand(Box<HandDeed>),
-    /// The edit was asked for that the last gesture made.
+    /// The edit of the last gesture was requested.
     Keep,
-    /// The plants were made again, and seen.
+    /// The plants were made again, and shown.
     Seen,
     /// Another plant was chosen.
     Select(PlantId),
     /// A command.
     Command(Box<document::Command>),
-    /// What is more than one command, and where it put a plant.
+    /// An action of more than one command, and the place that it gave a plant.
     Action(Box<Action>, Option<f64>),
-    /// What is staged from here on is one step of undo of this name.
+    /// Begins a gesture: the commands staged from here on form one step of undo of this name.
     Begin(String),
-    /// In the place of what was staged before.
+    /// Replaces the staged command.
     Stage(Box<document::Command>),
-    /// What was staged is done.
+    /// Commits the staged command.
     Commit,
-    /// What was staged is taken back.
+    /// Takes the staged command back.
     Abandon,
     /// The last step was taken back.
     Undo,
-    /// It was done again.
+    /// It was redone.
     Redo,
 }
 
-/// What a hand did with a tool.
+/// A deed of a hand with a tool.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HandDeed {
-    /// The tool, as it was set.
+    /// The tool, with its settings.
     pub tool: ToolKind,
-    /// How far beside a branch it still was meant.
+    /// Largest distance from a branch at which it is still meant.
     pub reach: ShapeReach,
-    /// What the hand did.
+    /// Input of the hand.
     pub input: ShapeInput,
 }
 
-/// What a replay came to.
+/// Result of a replay.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Replayed {
     /// Edits that gestures made.
     pub edits: usize,
-    /// The digest of the plant that was worked on last; none where there is none.
+    /// Digest of the plant that was worked on last; `None` without a plant.
     pub digest: Option<String>,
 }
 
@@ -110,8 +111,8 @@ impl GestureRecord {
     /// Reads a record.
     ///
     /// # Errors
-    /// [`WorkspaceError::Record`] for what is cut off or no record, [`WorkspaceError::RecordForm`] for one of another form,
-    /// [`WorkspaceError::RecordLong`] for one that is too long, or whose moves are.
+    /// [`WorkspaceError::Record`] for text that is cut off or not a record, [`WorkspaceError::RecordForm`] for another
+    /// form, [`WorkspaceError::RecordLong`] for a record that is too long, or whose moves are.
     ///
     /// ```
     /// use workspace::{GestureRecord, WorkspaceError};
@@ -139,7 +140,7 @@ impl GestureRecord {
         Ok(record)
     }
 
-    /// The project that the hands found, as bytes of its file.
+    /// Returns the project at the start of the session, as bytes of its file.
     ///
     /// # Errors
     /// [`WorkspaceError::RecordProject`].
@@ -150,14 +151,14 @@ impl GestureRecord {
 }
 
 impl Workspace {
-    /// Replays what was recorded. `saw` is told of each step once it is done.
+    /// Replays a record. `saw` is called with each step once it is done.
     ///
-    /// Guaranteed: the document that the same requests made, if plants were made again where the record says so. A gesture
-    /// that the record does not end is let go without an edit. That the plant is the one of the record is for the caller to
-    /// compare: another version may make other plants.
+    /// Guaranteed: the document that the same requests made, if plants were made again where the record says so. A
+    /// gesture that the record does not end is dropped without an edit. The caller has to compare the plant with that
+    /// of the record: another version may make other plants.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: why a step was refused; those before it stay.
+    /// [`WorkspaceError`]: the reason why a step was refused; the steps before it stay.
     pub fn replay(
         &mut self,
         record: &GestureRecord,
@@ -174,7 +175,7 @@ impl Workspace {
         }
         if let Some(plant) = record.plant {
             match self.select(plant) {
-                // A file has no numbers: of one plant it is clear which is meant.
+                // A file has no numbers; if it has one plant, this is the one meant.
                 Err(WorkspaceError::PlantGone)
                     if record.project.is_some()
                         && record.numbers.is_none()
@@ -195,7 +196,7 @@ impl Workspace {
         Ok(Replayed { edits, digest: last.and_then(|p| p.item).map(|item| item.digest) })
     }
 
-    /// `made`: the edit that the last gesture made.
+    /// Replays one step. `made`: the edit that the last gesture made.
     fn do_again(
         &mut self,
         deed: &GestureDeed,
@@ -210,7 +211,7 @@ impl Workspace {
             GestureDeed::Keep => {
                 let edit = made.take().ok_or(WorkspaceError::RecordKeeps)?;
                 let plant = self.must()?;
-                self.run(ShapeCommand::Add(Arc::new(edit)).of(plant))?;
+                self.run(ShapeCommand::Add(Arc::new(edit)).for_plant(plant))?;
             }
             GestureDeed::Seen => drop(self.evaluate(run)?),
             GestureDeed::Select(plant) => self.select(*plant)?,

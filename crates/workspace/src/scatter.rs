@@ -1,4 +1,4 @@
-//! Where copies of a plant stand: along a line, in an area, under a brush.
+//! Places of copies of a plant: along a line, in an area, under a brush.
 
 use burgeon::document::{Placement, PlantId};
 use burgeon::geom;
@@ -7,19 +7,19 @@ use burgeon::{Draw, Seed, Stream};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Copies of a plant, and where they are to stand.
+/// Copies of a plant, and the ground that they stand on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {
     /// The plant.
     pub plant: PlantId,
-    /// Where.
+    /// The ground.
     pub ground: Ground,
     /// Least distance between any two plants, metres; 0.001 to 10,000.
     pub spacing_m: f64,
-    /// How many different plants the copies are, each with a seed of its own; 0 for copies that are all alike.
+    /// Number of different plants among the copies, each with a seed of its own; 0 for copies that are all alike.
     pub kinds: u32,
-    /// How much sizes differ: copies are up to this share smaller or larger; 0 to 0.9.
+    /// Variation of size: copies are up to this share smaller or larger; 0 to 0.9.
     pub vary: f64,
 }
 
@@ -31,22 +31,23 @@ pub enum Ground {
     Line(Vec<[f64; 2]>),
     /// All over a closed outline.
     Area(Vec<[f64; 2]>),
-    /// All over what a brush covers.
+    /// All over the ground that a brush covers.
     Brush {
-        /// Its way.
+        /// Path of the brush.
         path: Vec<[f64; 2]>,
         /// Its radius, metres.
         radius_m: f64,
     },
 }
 
-/// So many darts in a row that miss mean that nothing is left to hit.
+/// Number of successive misses of darts after which the ground counts as full.
 const MISSES: usize = 400;
-/// As many places as a scene may have plants.
+/// Most places: as many as a scene may have plants.
 const MOST: usize = 200;
 
-/// Places all over an outline with at least `spacing_m` between them, at most `most`, each turned by chance and up to a
-/// share of `vary` (0 to 0.9) smaller or larger: what shells stand plants at that are in no document.
+/// Returns places all over an outline with at least `spacing_m` between them, at most `most`, each with a random
+/// rotation and up to a share of `vary` (0 to 0.9) smaller or larger, for plants that shells show but no document
+/// holds.
 ///
 /// The same places for the same seed; outlines and numbers as in [`Scatter`]. Cost: quadratic in places.
 pub fn stand(outline: &[[f64; 2]], spacing_m: f64, vary: f64, most: usize, seed: Seed) -> Vec<Placement> {
@@ -60,7 +61,7 @@ pub fn stand(outline: &[[f64; 2]], spacing_m: f64, vary: f64, most: usize, seed:
     found.into_iter().map(|at| turned(at, 0.0, 1.0, vary, &mut stream)).collect()
 }
 
-/// A place on the ground, turned and sized by chance.
+/// Makes a place on the ground with a random rotation and size.
 pub(crate) fn turned(at: DVec2, height_m: f64, scale: f64, vary: f64, stream: &mut Stream) -> Placement {
     Placement {
         position: DVec3::new(at.x, height_m, at.y),
@@ -69,7 +70,7 @@ pub(crate) fn turned(at: DVec2, height_m: f64, scale: f64, vary: f64, stream: &m
     }
 }
 
-/// Places with at least `spacing` between them and from those that are taken.
+/// Finds places with at least `spacing` between them and from those that are taken.
 pub(crate) fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mut Stream) -> Vec<DVec2> {
     let finite = |points: &[[f64; 2]]| -> Vec<DVec2> {
         points.iter().map(|&p| DVec2::from(p)).filter(|p| p.abs().max_element() <= 1e5).collect()
@@ -89,7 +90,7 @@ pub(crate) fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mu
     }
 }
 
-/// Every `spacing` metres along a line, from its start.
+/// Places points every `spacing` metres along a line, from its start.
 fn row(line: &[DVec2], spacing: f64, taken: &[DVec2]) -> Vec<DVec2> {
     let mut out: Vec<DVec2> = Vec::new();
     let mut next = 0.0;
@@ -97,7 +98,7 @@ fn row(line: &[DVec2], spacing: f64, taken: &[DVec2]) -> Vec<DVec2> {
         let length = w[0].distance(w[1]);
         while next <= length && out.len() < MOST {
             let at = w[0].lerp(w[1], if length > 0.0 { next / length } else { 0.0 });
-            // A thousandth less: the length of a way is not exact.
+            // A thousandth less: the length of a path is not exact.
             if taken.iter().all(|t| t.distance(at) >= 0.999 * spacing) {
                 out.push(at);
             }
@@ -108,7 +109,7 @@ fn row(line: &[DVec2], spacing: f64, taken: &[DVec2]) -> Vec<DVec2> {
     out
 }
 
-/// Poisson-disc samples by darts (Cook 1986): each falls anywhere in the box and stays where it has room.
+/// Draws Poisson-disc samples by darts (Cook 1986): each falls anywhere in the box and stays where it has room.
 fn darts(
     (around, margin): (&[DVec2], f64),
     spacing: f64,

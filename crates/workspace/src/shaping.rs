@@ -1,6 +1,6 @@
-//! Hands on a plant: a tool of `shape`, what it holds, and what letting go would make.
+//! Shaping plants by hand: a tool of `shape`, the branch that it holds, and the edit that a release would make.
 //!
-//! `tool + pointers -> shape::Tool -> a preview that is never in the document | the edit, to be asked for`
+//! `tool + pointers -> shape::Tool -> a preview that is never in the document | the edit, to be requested`
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use crate::held::{CarriedPose, Held, Rows};
 use crate::view::{PREVIEW_DETAIL, coarser};
 use crate::{Workspace, WorkspaceError};
 
-/// A plant of more triangles is shown coarser while a gesture is going on.
+/// Number of triangles above which a plant is shown coarser during a gesture.
 const COARSE_ABOVE: u64 = 40_000;
 /// Radians of a degree.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -30,20 +30,20 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapePointer {
-    /// Where its ray starts.
+    /// Start of its ray.
     pub origin: [f64; 3],
-    /// Along its ray.
+    /// Direction of its ray.
     pub direction: [f64; 3],
-    /// Into the view.
+    /// Direction into the view.
     pub forward: [f64; 3],
-    /// Upwards in the view.
+    /// Upward direction of the view.
     pub up: [f64; 3],
-    /// 0 to 1.
+    /// Pressure, 0 to 1.
     pub pressure: f64,
-    /// Where the tip of a tracked controller is: it works there, and not on a plane.
+    /// Position of the tip of a tracked controller: it works there, and not on a plane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tip: Option<[f64; 3]>,
-    /// How that controller is turned, a quaternion: x, y, z, w.
+    /// Orientation of that controller, a quaternion: x, y, z, w.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<[f64; 4]>,
 }
@@ -63,7 +63,7 @@ impl From<ShapePointer> for Pointer {
     }
 }
 
-/// What the hand did.
+/// Input of a hand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ShapeInput {
@@ -75,61 +75,61 @@ pub enum ShapeInput {
     Up(ShapePointer),
     /// It takes everything back.
     Cancel,
-    /// It turned what it holds, degrees.
+    /// It turned the held branch, degrees.
     Twist(f64),
-    /// A thumb on its touchpad or stick, whose rim is 1, x to the right and y up; none: it was lifted. A branch that is
-    /// held turns with it; a plane that is drawn on leans by its distance from the centre.
+    /// A thumb on its touchpad or stick, whose rim is 1, x to the right and y up; none: it was lifted. A held branch
+    /// turns with it; a drawing plane tilts by its distance from the centre.
     Thumb(Option<[f64; 2]>),
     /// It goes from branch to branch by keys, without a pointer.
     Walk {
-        /// The branch that is meant now; none begins with what stands on the ground.
+        /// The current branch; none begins with the stems on the ground.
         from: Option<u32>,
-        /// Where to.
+        /// The step.
         to: ShapeStep,
     },
     /// A plane is placed: through its tip (without one, its origin), facing it.
     Plane(ShapePointer),
     /// A plane of symmetry is placed: upright through the foot of the plant's longest stem, between the viewer's hands.
     Mirror(ShapePointer),
-    /// It holds on: what grows is a round older.
+    /// It keeps holding: the growing shoot is a round older.
     Round,
-    /// What grows has other numbers from now on.
+    /// The growing shoot has new settings from now on.
     Grow(Growth),
     /// It changed its brush.
     Brush {
-        /// How thick it is, metres.
+        /// Radius of the brush, metres.
         radius_m: f64,
-        /// How many branches it makes.
+        /// Density of the branches.
         density: f64,
     },
 }
 
-/// From one branch to another.
+/// Step from one branch to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeStep {
-    /// The next that the same branch bears; after the last the first.
+    /// The next branch of the same bearer; after the last the first.
     Next,
-    /// The one before.
+    /// The previous branch of the same bearer.
     Previous,
-    /// What bears it.
+    /// Its bearer.
     Bearer,
-    /// The first that it bears.
+    /// The first branch that it bears.
     Borne,
 }
 
-/// How a hand reaches: how far beside a branch it is still meant, `metres + per_metre * distance`, and where it works a
-/// second time.
+/// Reach of a hand: the largest distance from a branch that is still meant, `metres + per_metre * distance`, and the
+/// plane in which its edits are mirrored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeReach {
-    /// Close by.
+    /// Distance close by, metres.
     pub metres: f64,
-    /// More with each metre of distance.
+    /// Increase with each metre of distance.
     pub per_metre: f64,
-    /// Not the branch but what bears it, so many up.
+    /// Number of steps from the branch to its bearers.
     pub bearers: u32,
-    /// A plane of symmetry: what is drawn, brushed or grown on one side is made on the other.
+    /// A plane of symmetry: branches drawn, brushed or grown on one side are mirrored to the other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<Mirror>,
 }
@@ -139,61 +139,62 @@ pub struct ShapeReach {
 pub struct Picked {
     /// Its row.
     pub axis: u32,
-    /// Where along it, a share of its length.
+    /// Place on it, as a share of its length.
     pub at: f64,
-    /// Where, metres.
+    /// That place, metres.
     pub point: [f64; 3],
-    /// 0 for the main axis.
+    /// Order of branching, 0 for the main axis.
     pub order: u32,
-    /// Along its course.
+    /// Length along its course.
     pub length_m: f64,
-    /// Shoots that it bears, and that these bear.
+    /// Number of shoots that it bears, directly or through others.
     pub bears: usize,
-    /// Nothing bears it.
+    /// Whether it stands on the ground.
     pub stands: bool,
-    /// A name for edits, where the pointer went down or up.
+    /// Key for edits, where the pointer went down or up.
     pub key: Option<AxisKey>,
 }
 
-/// What came of an input.
+/// Answer to an input.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ShapeAnswer {
     /// The branch that is meant.
     pub picked: Option<Picked>,
-    /// The edit of a gesture that ended: to be asked for as a command.
+    /// The edit of a gesture that ended, to be requested as a command.
     pub commit: Option<HandEdit>,
-    /// A gesture is going on.
+    /// Whether a gesture is in progress.
     pub busy: bool,
-    /// What is shown of the plant is out of date.
+    /// Whether the view of the plant is out of date.
     pub again: bool,
-    /// How far the branch that is held was turned, degrees.
+    /// Rotation of the held branch so far, degrees.
     pub turned_deg: Option<f64>,
     /// The plane that was placed.
     pub plane: Option<ViewPlane>,
     /// The plane of symmetry that was placed.
     pub mirror: Option<Mirror>,
-    /// What grows in the hand, as far as it is shown.
+    /// The growth in the hand, as far as it is shown.
     pub grown: Option<Grown>,
-    /// How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go.
+    /// Motion of the held branch: the shell moves its triangles, which are not made again before the hand lets go.
     pub carried: Option<CarriedPose>,
-    /// On what the branch in the hand would be dropped, a row: once it was pulled off, or where it slid onto other wood.
+    /// Row of the axis that the branch in the hand would be dropped on: once it was pulled off, or slid onto other
+    /// wood.
     pub host: Option<u32>,
 }
 
-/// What grew since a hand holds on, both sides of a plane of symmetry together.
+/// Growth since a hand began to hold, both sides of a plane of symmetry together.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Grown {
     /// Its age: rounds of growth.
     pub rounds: u32,
-    /// Branches, those shown last.
+    /// Number of branches in the last view.
     pub branches: usize,
     /// Its density: branches for each metre of new wood; none before any grew.
     pub per_metre: Option<f64>,
 }
 
 impl Grown {
-    /// `shown`: the plant with what grew, which may be of a round or two before.
-    fn of(before: &Plant, shown: Option<&Plant>, rounds: u32) -> Self {
+    /// Counts the growth. `shown`: the plant with the growth, perhaps of one or two rounds before.
+    fn count(before: &Plant, shown: Option<&Plant>, rounds: u32) -> Self {
         let wood = |plant: &Plant| {
             let shoots = plant.axes.iter().enumerate();
             let shoots = shoots.filter(|(_, a)| a.kind.is_shoot());
@@ -209,8 +210,8 @@ impl Grown {
 }
 
 impl Workspace {
-    /// Lets a tool shape the current plant. What a gesture would make is shown but is not in the document; what it made
-    /// is the caller's to ask for by a [`ShapeCommand`].
+    /// Lets a tool shape the current plant. The edit of a gesture is shown but is not in the document; once made, the
+    /// caller requests it by a [`ShapeCommand`].
     ///
     /// # Errors
     /// [`WorkspaceError`]: when there is no plant.
@@ -232,7 +233,7 @@ impl Workspace {
         let had = self.preview_edit(id).cloned();
         let going = self.held.as_ref().is_some_and(|h| h.tool.is_busy() && h.plant == id);
         if !going {
-            // Between gestures only a pointer that goes down begins something; all else looks around.
+            // Between gestures only a pointer that goes down begins one; all other input only looks.
             if !matches!(input, ShapeInput::Down(_)) {
                 return Ok(self.point(id, reach, &input));
             }
@@ -276,9 +277,9 @@ impl Workspace {
         let busy = tool.is_busy();
         if !going && let Some(pick) = said.picked.filter(|_| tool.carries()) {
             held.rows = self.scene.get(id).and_then(|made| {
-                // Another gesture's preview may be what is shown.
+                // The view may show another gesture's preview.
                 let layout = made.layout.filter(|_| had.is_none())?;
-                let shown = match self.levels.of(id) {
+                let shown = match self.levels.get(id) {
                     Some(level) => level.branch(plant, pick.axis)?,
                     None => layout.branch(plant, pick.axis)?,
                 };
@@ -292,7 +293,7 @@ impl Workspace {
         let host = tool.host().and_then(|axis| u32::try_from(axis.index()).ok());
         held.preview = said.preview.or_else(|| said.commit.clone()).map(Arc::new);
         let now = held.preview.clone();
-        // Meshes that were made meanwhile are not moved: what is held is made again then.
+        // Meshes that were made meanwhile are not moved: the held branch is then made again.
         let shown = self.scene.get(id).map(|made| self.levels.name(id, made.revision));
         held.rows = held.rows.take().filter(|rows| shown == Some(rows.mesh));
         let carried =
@@ -312,7 +313,7 @@ impl Workspace {
             Some(HandEdit::Grow { rounds, .. }) if busy => {
                 let before = self.held.as_ref().map(|h| &h.before);
                 let shown = self.scene.get(id).and_then(|made| made.plant);
-                before.map(|before| Grown::of(before, shown, *rounds))
+                before.map(|before| Grown::count(before, shown, *rounds))
             }
             _ => None,
         };
@@ -321,7 +322,7 @@ impl Workspace {
         Ok(ShapeAnswer { picked, commit, busy, again, turned_deg, carried, grown, host, ..none })
     }
 
-    /// The answer to what no tool is needed for.
+    /// Answers inputs that need no tool.
     fn aside(&self, id: PlantId, input: &ShapeInput) -> Result<Option<ShapeAnswer>, WorkspaceError> {
         let plant = || self.shown_plant(id).ok_or(WorkspaceError::NothingToShape);
         let none = ShapeAnswer::default();
@@ -340,7 +341,7 @@ impl Workspace {
         }))
     }
 
-    /// Only looks what is under the pointer.
+    /// Finds the branch under the pointer, without an edit.
     fn point(&mut self, id: PlantId, reach: Reach, input: &ShapeInput) -> ShapeAnswer {
         let (at, named) = match input {
             ShapeInput::Down(at) | ShapeInput::Up(at) => (Some(*at), true),
@@ -356,7 +357,7 @@ impl Workspace {
         ShapeAnswer { picked: found, again, ..ShapeAnswer::default() }
     }
 
-    /// The plant that is seen, without the preview of a gesture.
+    /// Returns the plant that is shown, without the preview of a gesture.
     fn shown_plant(&self, id: PlantId) -> Option<&Plant> {
         if let Some(held) = self.held.as_ref().filter(|h| h.plant == id && h.preview.is_some()) {
             return Some(&held.before);
@@ -365,7 +366,8 @@ impl Workspace {
         self.scene.get(id)?.plant
     }
 
-    /// A branch of the current plant that was picked, and all that it bears, as pairs of points: x, y, z and radius of each.
+    /// Returns a branch of the current plant that was picked, and all that it bears, as pairs of points: x, y, z and
+    /// radius of each.
     pub fn branch(&self, axis: u32) -> Vec<f32> {
         let plant = self.current().and_then(|id| self.shown_plant(id));
         let Some(plant) = plant.filter(|p| (axis as usize) < p.axes.len()) else { return Vec::new() };
@@ -385,23 +387,25 @@ impl Workspace {
         out
     }
 
-    /// The control balls of the current leaf, for hands that move them.
+    /// Returns the control balls of the current leaf, for hands that move them.
     ///
     /// # Errors
-    /// [`WorkspaceError::NoPlant`]; [`WorkspaceError::NothingMade`] for a plant that is no leaf; why it makes no leaf.
+    /// [`WorkspaceError::NoPlant`]; [`WorkspaceError::NothingMade`] for a plant that is not a leaf; the reason why it
+    /// makes no leaf.
     pub fn balls(&self) -> Result<LeafBalls, WorkspaceError> {
         let plant = self.current_plant().ok_or(WorkspaceError::NoPlant)?;
         let Maker::Leaf(leaf) = &plant.settings().maker else { return Err(WorkspaceError::NothingMade) };
         Ok(burgeon::leaf_balls(leaf)?)
     }
 
-    /// What of the current plant's meshes a hand carries: part, first triangle, and the one after the last, of each range;
+    /// Returns the part of the current plant's meshes that a hand carries: part, first triangle, and end of each range;
     /// ranges of a part ascend and lie apart. Empty where nothing is carried.
     pub fn held_rows(&self) -> &[u32] {
         self.held.as_ref().and_then(|h| h.rows.as_ref()).map_or(&[], |rows| rows.ranges.as_flattened())
     }
 
-    /// The current plant as it is seen: what a hand carries is where the hand is. A copy; none where nothing is made.
+    /// Returns a copy of the current plant as it is shown, with the carried branch in its pose; `None` where nothing is
+    /// made.
     pub fn seen(&self) -> Option<Model> {
         let mut model = self.model(self.current()?)?.clone();
         let held = self.held.as_ref().and_then(|h| Some((h.rows.as_ref()?, h.carried?)));
@@ -428,24 +432,25 @@ impl Workspace {
         Some(model)
     }
 
-    /// The edit of the gesture that is shown of a plant.
+    /// Returns the edit of the gesture that is shown on a plant.
     fn preview_edit(&self, id: PlantId) -> Option<&Arc<HandEdit>> {
         self.held.as_ref().filter(|h| h.plant == id)?.preview.as_ref()
     }
 
-    /// The document with the edit of the gesture in it, coarser where that is faster; none where nothing is held.
+    /// Returns the document with the edit of the gesture in it, coarser where that is faster; `None` where nothing is
+    /// held.
     pub(crate) fn with_gesture(&self) -> Option<(PlantId, Document)> {
         let id = self.current()?;
-        // What is carried is moved by the shell.
+        // The shell moves what is carried.
         if self.held.as_ref().is_some_and(|h| h.rows.is_some()) {
             return None;
         }
         let edit = self.preview_edit(id)?;
         let mut aside = Editor::new(self.editor.document().clone());
-        aside.run(ShapeCommand::Add(Arc::clone(edit)).of(id)).ok()?;
+        aside.run(ShapeCommand::Add(Arc::clone(edit)).for_plant(id)).ok()?;
         if self.held.as_ref().is_some_and(|h| h.large) {
             let command = coarser(aside.document(), id, PREVIEW_DETAIL);
-            // A mesh that is as coarse as it can be stays as it is.
+            // A mesh that is already as coarse as possible stays as it is.
             if let Some(Err(e)) = command.map(|c| aside.run(c))
                 && !matches!(e, CommandError::Nothing(_))
             {
@@ -456,7 +461,7 @@ impl Workspace {
     }
 }
 
-/// How far an edit turns a branch, degrees.
+/// Returns the angle by which an edit turns a branch, degrees.
 fn turned(edit: &HandEdit) -> Option<f64> {
     match edit {
         HandEdit::Rotate { turn, .. } | HandEdit::Move { turn: Some(turn), .. } => Some(turn.degrees),
@@ -464,7 +469,7 @@ fn turned(edit: &HandEdit) -> Option<f64> {
     }
 }
 
-/// The branch at the end of a step.
+/// Returns the branch at the end of a step.
 fn walked(plant: &Plant, from: Option<u32>, to: ShapeStep) -> Option<Picked> {
     let woody = |a: &Axis| a.kind.is_shoot();
     let bearer = |a: &Axis| Some(*plant.nodes.axis.get(a.bearer?.index())?);
@@ -490,7 +495,7 @@ fn walked(plant: &Plant, from: Option<u32>, to: ShapeStep) -> Option<Picked> {
     picked(plant, Pick { axis, at: 0.5, point, distance_m: 0.0 }, true)
 }
 
-/// What is told of a branch; `named`: with a name for edits.
+/// Describes a branch; `named`: with a key for edits.
 fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
     let axis = u32::try_from(pick.axis.index()).ok()?;
     let shoots = plant.borne_by(pick.axis);
@@ -503,6 +508,6 @@ fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
         length_m: geom::polyline_length3(plant.axis_points(pick.axis)),
         bears: shoots.count().saturating_sub(1),
         stands: plant.axis(pick.axis).bearer.is_none(),
-        key: if named { AxisKey::of(plant, pick.axis) } else { None },
+        key: if named { AxisKey::for_axis(plant, pick.axis) } else { None },
     })
 }

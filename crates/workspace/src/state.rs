@@ -1,4 +1,4 @@
-//! What a shell shows of the document: everything but points, meshes and pictures.
+//! The document as a shell shows it: everything but points, meshes and pictures.
 
 use burgeon::bloom::FlowerSpec;
 use burgeon::document::{
@@ -28,14 +28,14 @@ pub struct DocumentState<'a> {
     pub name: &'a str,
     /// The plant that is chosen.
     pub current: Option<PlantId>,
-    /// The plants in the order in which they came in.
+    /// The plants in the order in which they were added.
     pub plants: Vec<PlantState<'a>>,
-    /// The numbers that they go by.
+    /// Their numbers.
     pub numbers: PlantNumbers,
 }
 
 impl<'a> DocumentState<'a> {
-    pub(crate) fn of(editor: &'a Editor, current: Option<PlantId>) -> Self {
+    pub(crate) fn from_editor(editor: &'a Editor, current: Option<PlantId>) -> Self {
         let document = editor.document();
         Self {
             revision: editor.revision(),
@@ -44,13 +44,13 @@ impl<'a> DocumentState<'a> {
             steps: editor.done().len(),
             name: document.name(),
             current,
-            plants: document.plants().iter().map(|p| PlantState::of(p, document)).collect(),
+            plants: document.plants().iter().map(|p| PlantState::from_plant(p, document)).collect(),
             numbers: document.numbers(),
         }
     }
 }
 
-/// One plant; of `sketch`, `tree`, `leaf` and `flower` that of its maker is there.
+/// One plant; of `sketch`, `tree`, `leaf` and `flower`, the field of its maker is present.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlantState<'a> {
     /// Its name within the document.
@@ -59,46 +59,46 @@ pub struct PlantState<'a> {
     pub maker: MakerWord,
     /// Its name.
     pub name: &'a str,
-    /// As text: JavaScript's numbers hold 53 bits.
+    /// Seed as text: JavaScript's numbers hold 53 bits.
     pub seed: String,
-    /// Dice leave its seed alone.
+    /// Whether dice leave its seed alone.
     pub locked: bool,
-    /// Whether it stays where it stands.
+    /// Whether its place is locked.
     pub fixed: bool,
-    /// It is left out of the view.
+    /// Whether it is left out of the view.
     pub hidden: bool,
     /// The group it belongs to; empty for none.
     pub group: &'a str,
-    /// Metres.
+    /// Position, metres.
     pub position: [f64; 3],
     /// Turn about +Y, degrees.
     pub yaw_deg: f64,
-    /// Size.
+    /// Scale.
     pub scale: f64,
     /// Whether others may bear its leaf.
     pub lends: bool,
     /// The materials of its leaves, petals and sepals.
     pub wear: WearState<'a>,
-    /// Edits by hand, in the order in which they are done.
+    /// Hand edits, in the order in which they are applied.
     pub edits: Vec<EditState>,
-    /// Of a drawing.
+    /// State of a drawing.
     pub sketch: Option<SketchState<'a>>,
-    /// Of a tree.
+    /// State of a tree.
     pub tree: Option<TreeState<'a>>,
-    /// Of a measured leaf.
+    /// State of a measured leaf.
     pub leaf: Option<LeafState<'a>>,
-    /// Of a flower.
+    /// State of a flower.
     pub flower: Option<FlowerState<'a>>,
 }
 
 /// The materials that a person gave to kinds of organs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct WearState<'a> {
-    /// Of all leaves.
+    /// Material of all leaves.
     pub leaf: Option<&'a OrganMaterial>,
-    /// Of all petals.
+    /// Material of all petals.
     pub petal: Option<&'a OrganMaterial>,
-    /// Of all sepals and bracts.
+    /// Material of all sepals and bracts.
     pub sepal: Option<&'a OrganMaterial>,
 }
 
@@ -116,27 +116,27 @@ pub enum MakerWord {
     Flower,
 }
 
-/// What kind of edit by hand.
+/// A hand edit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct EditState {
-    /// The word of [`burgeon::shape::HandEdit`].
+    /// Its word in [`burgeon::shape::HandEdit`].
     pub op: &'static str,
-    /// Left out for now.
+    /// Whether it is left out for now.
     pub off: bool,
 }
 
 /// A drawing without its points.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SketchState<'a> {
-    /// How it is understood.
+    /// Settings for reading it.
     pub sketch: &'a SketchSpec,
-    /// How it is meshed.
+    /// Settings for meshing it.
     pub skin: &'a SkinSpec,
     /// Its strokes in the order in which they were drawn.
     pub strokes: Vec<StrokeState<'a>>,
     /// Its layers from below upwards.
     pub layers: &'a [Layer],
-    /// What lies under it.
+    /// The photograph under it.
     pub photo: Option<PhotoState>,
     /// The day at which its flowers are shown.
     pub day: Option<f64>,
@@ -149,34 +149,34 @@ pub struct SketchState<'a> {
 pub struct StrokeState<'a> {
     /// Its name within the document.
     pub id: StrokeId,
-    /// In which mode it was drawn.
+    /// Mode in which it was drawn.
     pub mode: StrokeMode,
     /// The class that the person set.
     pub class: Option<StrokeClass>,
-    /// What it was shown as, clearly, when the last stroke was drawn.
+    /// Class that it was clearly shown as when the last stroke was drawn.
     pub shown: Option<StrokeClass>,
     /// Its own colour.
     pub color: Option<[u8; 3]>,
     /// Its own width, in the drawing's unit.
     pub width: Option<f64>,
-    /// The name of its layer; none for the sheet itself.
+    /// Name of its layer; none for the sheet itself.
     pub layer: Option<&'a str>,
     /// Its own material.
     pub material: Option<&'a OrganMaterial>,
 }
 
-/// How a photograph lies, and its size.
+/// Placement of a photograph, and its size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PhotoState {
-    /// As it was asked for.
+    /// Requested placement.
     pub place: PhotoPlace,
-    /// Height in the drawing's unit: it follows from the picture.
+    /// Height in the drawing's unit, which follows from the picture.
     pub height: f64,
     /// Pixels across and down.
     pub pixels: (u32, u32),
 }
 
-/// What a tree is grown from.
+/// Settings of a tree.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TreeState<'a> {
     /// The species that the spec came from.
@@ -185,40 +185,40 @@ pub struct TreeState<'a> {
     #[schemars(with = "std::collections::BTreeMap<String, Value>")]
     #[serde(serialize_with = "spec::through_json::serialize")]
     pub spec: &'a TreeSpec,
-    /// How it is meshed.
+    /// Settings for meshing it.
     pub skin: &'a SkinSpec,
     /// The plant whose leaf it bears.
     pub leaf: Option<PlantId>,
-    /// What it grows around.
+    /// Obstacles that it grows around.
     pub obstacles: Vec<NamedShape<'a>>,
 }
 
 /// An obstacle with its name.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NamedShape<'a> {
-    /// For lists.
+    /// Name in lists.
     pub name: &'a str,
     /// The solid.
     pub shape: ObstacleView,
 }
 
-/// An obstacle to be shown: a mesh is told by its size only, its corners are asked for.
+/// An obstacle to be shown: of a mesh only the size; its corners are fetched separately.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ObstacleView {
-    /// Any but a mesh.
+    /// Any shape but a mesh.
     Shape(Obstacle),
     /// A mesh.
     Mesh {
         /// Always `mesh`.
         shape: &'static str,
-        /// How many it has.
+        /// Number of triangles.
         triangles: usize,
     },
 }
 
 impl ObstacleView {
-    pub(crate) fn of(shape: &Obstacle) -> Self {
+    pub(crate) fn from_obstacle(shape: &Obstacle) -> Self {
         match shape {
             Obstacle::Mesh { triangles, .. } => Self::Mesh { shape: "mesh", triangles: triangles.len() },
             other => Self::Shape(other.clone()),
@@ -226,18 +226,18 @@ impl ObstacleView {
     }
 }
 
-/// What a leaf is made of.
+/// Source of a leaf.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LeafState<'a> {
     /// Name of the file of marks or veins.
     pub file: &'a str,
     /// Its text.
     pub text: &'a str,
-    /// How the leaf is made of it.
+    /// Settings for making the leaf of it.
     pub settings: &'a burgeon::leaf::LeafSpec,
 }
 
-/// Which flower, on which day.
+/// Settings of a flower, and its day.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FlowerState<'a> {
     /// The species that the spec came from.
@@ -253,7 +253,7 @@ pub struct FlowerState<'a> {
 }
 
 impl<'a> PlantState<'a> {
-    fn of(plant: &'a DocumentPlant, document: &Document) -> Self {
+    fn from_plant(plant: &'a DocumentPlant, document: &Document) -> Self {
         let s = plant.settings();
         let mut state = Self {
             id: plant.id(),
@@ -304,8 +304,8 @@ impl<'a> PlantState<'a> {
             }
             Maker::Tree(t) => {
                 let obstacles = t.obstacles.iter();
-                let obstacles =
-                    obstacles.map(|o| NamedShape { name: &o.name, shape: ObstacleView::of(&o.shape) });
+                let obstacles = obstacles
+                    .map(|o| NamedShape { name: &o.name, shape: ObstacleView::from_obstacle(&o.shape) });
                 state.maker = MakerWord::Tree;
                 state.tree = Some(TreeState {
                     preset: t.preset.as_deref(),
@@ -335,14 +335,16 @@ impl<'a> PlantState<'a> {
     }
 }
 
-/// The pen that a stroke is drawn with; what is left out is that of every sheet.
+/// The pen that a stroke is drawn with; a field left out is that of the default pen.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PenStyle {
-    /// The colour of what is drawn, sRGB.
+    /// Colour of the stroke, sRGB.
     pub color: Option<[u8; 3]>,
-    /// In the drawing's unit, above 0.
+    /// Width in the drawing's unit, above 0.
     pub width: Option<f64>,
     /// The name of the layer.
     pub layer: Option<String>,
+    /// The class of strokes that are drawn with it, if the person chose one.
+    pub class: Option<StrokeClass>,
 }

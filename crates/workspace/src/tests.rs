@@ -1,10 +1,11 @@
 //! The workspace as a page uses it: commands and answers as JSON.
 
 use burgeon::document::{
-    self, Command, Document, Placement, PlantCommand, PlantId, SceneCommand, SketchCommand, StrokeId,
+    self, Command, Document, NewStroke, Placement, PlantCommand, PlantId, SceneCommand, SketchCommand,
+    StrokeId,
 };
 use burgeon::glam::{DVec2, DVec3};
-use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use burgeon::ink::{InkSample, Stroke, StrokeClass, StrokeMode};
 use burgeon::shape::ToolKind;
 use burgeon::skin::{OrganMaterial, Wearer};
 use burgeon::{Budget, Refusal, Run, Seed, SketchOptions, formats};
@@ -33,7 +34,7 @@ fn json(answer: &impl Serialize) -> Value {
     serde_json::to_value(answer).unwrap()
 }
 
-/// What a page may ask for in a moment.
+/// Runs with the limits of a page.
 fn run() -> Run<'static> {
     Run { budget: Budget { times: 0.25, raise: None }, ..Run::plain() }
 }
@@ -57,7 +58,7 @@ impl Workspace {
     }
 }
 
-/// What is seen of the model that is looked at, or of the plant that is chosen.
+/// Evaluates and returns the view of the shown model, or of the chosen plant.
 fn look(s: &mut Workspace) -> Value {
     let view = json(&s.evaluate(&run()).unwrap());
     let id = s.current().map(|id| id.0);
@@ -188,13 +189,51 @@ fn looks_at_a_draft_keep_what_the_whole_drawing_was_understood_as() {
     assert!(changes > 0, "a stroke that comes later changes what an earlier one is");
 }
 
+/// A stroke has the class that the person gave to the pen: under the pen, in the document and in one step of undo.
+#[test]
+fn a_pen_that_was_told_what_it_draws_draws_that() {
+    let vein = || NewStroke { class: Some(StrokeClass::Vein), ..NewStroke::from(stem()) };
+    let mut s = Workspace::default();
+    s.draft(vein());
+    let row = look(&mut s)["item"]["strokes"][0].clone();
+    assert_eq!((row["class"].as_str(), row["source"].as_str()), (Some("vein"), Some("user")));
+    s.add_stroke(vein(), Vec::new()).unwrap();
+    assert_eq!(s.document().plants()[0].strokes()[0].class, Some(StrokeClass::Vein));
+    assert_eq!(look(&mut s)["item"]["strokes"][0]["source"], "user");
+    assert_eq!(json(&s.state())["steps"], 1);
+}
+
+/// Undo gives back what the hand drew, and then takes it away.
+#[test]
+fn a_straightened_stroke_is_a_step_after_the_drawn_one() {
+    let mut s = Workspace::default();
+    let id = s.add_stroke(stem(), Vec::new()).unwrap();
+    let drawn = s.stroke_points(id);
+    s.run(SketchCommand::SetClass(vec![id], Some(StrokeClass::Axis)).for_plant(PlantId(0))).unwrap();
+    s.straighten(id, line(&[(0.0, 0.0), (0.0, 195.0)]).samples).unwrap();
+    assert_eq!(
+        s.stroke_points(id).iter().map(|p| (p.0, p.1)).collect::<Vec<_>>(),
+        [(0.0, 0.0), (0.0, 195.0)]
+    );
+    assert_eq!(
+        s.document().plants()[0].strokes()[0].class,
+        Some(StrokeClass::Axis),
+        "what was said of it stays"
+    );
+    assert!(s.straighten(id, Vec::new()).is_err());
+    assert!(s.straighten(StrokeId(9), stem().samples).is_err());
+    assert!(s.straighten(id, line(&[(f64::NAN, 0.0)]).samples).is_err());
+    assert_eq!(s.undo(), Some("straighten"));
+    assert_eq!(s.stroke_points(id), drawn);
+}
+
 #[test]
 fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
     let mut s = Workspace::default();
     let id = s.add_stroke(stem(), Vec::new()).unwrap();
     s.begin("move").unwrap();
-    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(5.0, 1.0)).of(PlantId(0))).unwrap();
-    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(50.0, 0.0)).of(PlantId(0))).unwrap();
+    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(5.0, 1.0)).for_plant(PlantId(0))).unwrap();
+    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(50.0, 0.0)).for_plant(PlantId(0))).unwrap();
     s.commit();
     assert_eq!(s.stroke_points(id)[0].0, 50.0);
     assert_eq!(json(&s.state())["steps"], 2);
@@ -259,14 +298,14 @@ fn organs_wear_materials_by_kind_and_by_stroke_and_files_keep_them() {
     // A link has no room for pictures.
     other.open("l.burgeon", &s.share().unwrap(), 0, true).unwrap();
     assert!(names(&look(&mut other)).contains(&"petals-plain-2".to_owned()));
-    // What is taken off leaves nothing behind.
+    // A material that is removed leaves no picture behind.
     s.ask(&format!(r#"{{"sketch":[0,{{"set-material":[[{petal}],null]}}]}}"#)).unwrap();
     assert!(s.document().plants()[0].settings().pictures.is_empty());
     for _ in 0..3 {
         assert_eq!(s.undo(), Some("material"));
     }
     assert_eq!(names(&look(&mut s)), names(&plain));
-    // A day at which petals are others than the drawn ones.
+    // A day at which the petals differ from the drawn ones.
     s.ask(&format!(
         r#"{{"sketch":[0,{{"set-material":[{:?},{{"pattern":"speckled"}}]}}]}}"#,
         (0..15).collect::<Vec<_>>()
@@ -314,7 +353,7 @@ fn layers_hide_lock_and_travel() {
     let strokes = s.document().plants()[0].strokes().len();
     s.ask(r#"{"sketch":[0,"clear"]}"#).unwrap();
     assert_eq!((s.document().plants()[0].strokes().len(), s.undo()), (1, Some("clear")));
-    // Files keep them; of an SVG the hidden one comes last.
+    // Files keep them; in an SVG the hidden one comes last.
     let svg = s.file(ExportFormat::Drawing(formats::DrawingFormat::Svg));
     let mut other = Workspace::default();
     other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
@@ -323,7 +362,7 @@ fn layers_hide_lock_and_travel() {
     let plant = &other.document().plants()[0];
     assert_eq!((plant.strokes().len(), plant.layers()), (strokes, s.document().plants()[0].layers()));
     assert_eq!(plant.strokes()[strokes - 1].stroke.layer.as_deref(), Some("aside"));
-    // A new stroke on it is refused, one on the sheet is not; without the layer its strokes are back.
+    // A new stroke on it is refused, one on the sheet is not; without the layer its strokes are visible again.
     let on = Stroke { layer: Some("aside".into()), width: Some(3.0), ..stem() };
     assert!(s.add_stroke(on.clone(), Vec::new()).is_err());
     s.ask(r#"{"sketch":[0,{"remove-layer":0}]}"#).unwrap();
@@ -362,7 +401,7 @@ fn traced_organs_take_the_photograph_and_others_do_not() {
     let uvs = s.column(PlantId(0), part, Column::Uvs);
     assert_eq!(uvs.len() / 2, s.column(PlantId(0), part, Column::Positions).len() / 3);
     assert!(uvs.iter().all(|x| (0.0..=1.0).contains(x)));
-    // A small photograph far away traces nothing; one that does not paint neither.
+    // A small photograph far away traces nothing; neither does one that does not paint.
     s.ask(r#"{"sketch":[0,{"place-photo":{"x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}}]}"#)
         .unwrap();
     assert_eq!(names(&look(&mut s)), names(&plain));
@@ -386,7 +425,7 @@ fn marks() -> Vec<u8> {
     std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/leaves/leaf1.csv")).unwrap()
 }
 
-/// Name, digest and problem of every plant.
+/// Returns name, digest and problem of every plant.
 fn scene(s: &mut Workspace) -> Vec<(String, String, Value)> {
     let state = json(&s.state());
     let view = json(&s.evaluate(&run()).unwrap());
@@ -414,7 +453,7 @@ fn a_drawn_flower_opens_and_closes() {
     s.undo();
     s.undo();
     assert_eq!(look(&mut s)["parts"], drawn["parts"]);
-    // What was taken off the page comes back with its meshes.
+    // A plant that was removed from the page returns with its meshes.
     s.act(&Action::New).unwrap();
     assert!(look(&mut s)["parts"].as_array().unwrap().is_empty());
     s.undo();
@@ -436,8 +475,8 @@ fn a_tree_where_another_document_had_a_drawing() {
     assert!(look(&mut s)["front"].is_object());
 }
 
-/// A pointer in front of the plant, looking along -Z at (x, y).
-fn at(x: f64, y: f64) -> String {
+/// Returns a pointer in front of the plant, looking along -Z at (x, y).
+fn pointer_at(x: f64, y: f64) -> String {
     format!(r#"{{"origin":[{x},{y},9],"direction":[0,0,-1],"forward":[0,0,-1],"up":[0,1,0],"pressure":1}}"#)
 }
 
@@ -451,14 +490,14 @@ fn hand(s: &mut Workspace, tool: &str, input: &str) -> Value {
     )
 }
 
-/// A gesture from one place to another: what it would make, and the command for it.
+/// Makes a gesture from one place to another and returns its answer, with the command for it.
 fn gesture(s: &mut Workspace, tool: &str, from: (f64, f64), to: (f64, f64)) -> Value {
-    hand(s, tool, &format!(r#"{{"down":{}}}"#, at(from.0, from.1)));
-    hand(s, tool, &format!(r#"{{"move":[{}]}}"#, at(to.0, to.1)));
-    hand(s, tool, &format!(r#"{{"up":{}}}"#, at(to.0, to.1)))
+    hand(s, tool, &format!(r#"{{"down":{}}}"#, pointer_at(from.0, from.1)));
+    hand(s, tool, &format!(r#"{{"move":[{}]}}"#, pointer_at(to.0, to.1)));
+    hand(s, tool, &format!(r#"{{"up":{}}}"#, pointer_at(to.0, to.1)))
 }
 
-/// A bush, and the middle of one of its branches as the viewer sees it.
+/// Makes a bush, and returns the middle of one of its branches as the viewer sees it.
 fn bush() -> (Workspace, (f64, f64)) {
     let mut s = Workspace::default();
     s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
@@ -475,7 +514,7 @@ fn an_impossible_tree_is_an_error_on_the_page_and_the_last_one_stays() {
     let (mut s, _) = bush();
     let before = scene(&mut s);
     assert!(before[0].2.is_null() && !s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
-    // Within the limits of the command line, beyond the quarter of them that a page has.
+    // Within the limits of the command line, but beyond those of a page, which has a quarter of them.
     s.ask(r#"{"tree":[1,{"set-field":["/method",{"kind":"competition","points":600000}]}]}"#).unwrap();
     let said = scene(&mut s)[0].2.as_str().unwrap().to_owned();
     assert!(said.contains("600,000 attraction points") && said.contains("500,000"), "{said}");
@@ -508,7 +547,7 @@ fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
     let mut other = Workspace::default();
     other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(look(&mut other)["item"]["digest"], shaped["item"]["digest"]);
-    // One is left out, by its row; what stays keeps its number.
+    // One edit is left out, by its row; the others keep their numbers.
     s.ask(r#"{"shape":[1,{"leave":[0,true]}]}"#).unwrap();
     let left = look(&mut s);
     assert_eq!(
@@ -533,7 +572,7 @@ fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
 #[test]
 fn warnings_are_told_with_their_codes() {
     let mut s = Workspace::default();
-    // A house is no plant.
+    // A house is not a plant.
     let house: [&[(f64, f64)]; 4] = [
         &[(0.0, 0.0), (0.0, 60.0), (100.0, 60.0), (100.0, 0.0), (0.0, 0.0)],
         &[(-8.0, 60.0), (50.0, 110.0), (108.0, 60.0)],
@@ -552,7 +591,7 @@ fn warnings_are_told_with_their_codes() {
     }
 }
 
-/// A scene of one flower and the number of its plants' models.
+/// Makes a scene of one flower.
 fn flower() -> Workspace {
     let mut s = Workspace::default();
     s.act(&Action::Add { name: "a lily".into(), maker: NewMaker::Flower("lily".into()) }).unwrap();
@@ -574,7 +613,7 @@ fn branches_are_walked_by_keys() {
     let first = walk(Some(stem.axis), ShapeStep::Borne);
     assert!(first.axis != stem.axis && first.order == stem.order + 1);
     assert_eq!(walk(Some(first.axis), ShapeStep::Bearer), stem);
-    // Round all that the stem bears, and back.
+    // Walks round all that the stem bears, and back.
     let mut seen = vec![first.axis];
     loop {
         let next = walk(seen.last().copied(), ShapeStep::Next).axis;

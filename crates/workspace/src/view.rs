@@ -1,4 +1,4 @@
-//! What a shell shows of the plants: figures and names. Meshes are columns, asked for one by one.
+//! The plants as a shell shows them: figures and names. Meshes are columns, fetched one by one.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use serde::Serialize;
 
 use crate::ObstacleView;
 
-/// Share of the triangles while a stroke is drawn.
+/// Share of the triangles that a preview has while a stroke is drawn.
 pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
 
-/// Stands in a [`crate::PlantView`] for what is no plant of the document: a model that is shown, another seed.
+/// Number in a [`crate::PlantView`] of a model that is not a plant of the document: a model file, another seed.
 pub const GUEST: PlantId = PlantId(u32::MAX);
 
 /// A column of vertices.
@@ -29,14 +29,14 @@ pub enum Column {
     Uvs,
     /// Three floats a vertex, linear; may be empty.
     Colors,
-    /// Four floats a vertex, each 0 to 1: sway of the plant, sway of the limb, flutter, phase; mostly empty.
+    /// Four floats a vertex, each 0 to 1: sway of the plant, sway of the limb, flutter, phase; usually empty.
     Wind,
-    /// Three floats a vertex, metres: about what wind turns it; mostly empty.
+    /// Three floats a vertex, metres: the point about which wind turns it; usually empty.
     Pivots,
 }
 
 impl Column {
-    pub(crate) fn of(self, mesh: &TriMesh) -> &[f32] {
+    pub(crate) fn values(self, mesh: &TriMesh) -> &[f32] {
         match self {
             Self::Positions => mesh.positions.as_flattened(),
             Self::Normals => mesh.normals.as_flattened(),
@@ -51,11 +51,11 @@ impl Column {
 /// Every plant of a scene, as it was made last.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SceneView {
-    /// Of the document when it was made.
+    /// Revision of the document at the evaluation.
     pub revision: u64,
     /// A model that is shown instead.
     pub guest: Option<PlantView>,
-    /// In the document's order.
+    /// Views in the document's order.
     pub plants: Vec<PlantView>,
 }
 
@@ -64,21 +64,21 @@ pub struct SceneView {
 pub struct PlantView {
     /// Its name within the document, or [`GUEST`].
     pub id: PlantId,
-    /// Its meshes are others than those of the last view.
+    /// Whether its meshes differ from those of the last view.
     pub fresh: bool,
-    /// The name of its meshes: plants that have the same share them. None for what is only a preview.
+    /// Name of its meshes: plants with the same meshes share it. None for a preview.
     pub mesh: Option<u64>,
-    /// Why it could not be made; what was made before stays.
+    /// Reason why it could not be made; earlier results stay.
     pub error: Option<Refusal>,
     /// The entry of the report.
     pub item: Option<ItemReport>,
-    /// What was not as one might expect of it.
+    /// Warnings about it.
     pub warnings: Vec<WarningView>,
-    /// What was done again.
+    /// Stages that were computed again.
     pub stages: Vec<&'static str>,
-    /// How a drawing lies in the front view.
+    /// Placement of a drawing in the front view.
     pub front: Option<Front>,
-    /// Bud to full bloom, and from there to wilted.
+    /// Days from bud to full bloom, and from there to wilted.
     pub days: Option<[f64; 2]>,
     /// Lower corner of its bounds, metres.
     pub min: [f64; 3],
@@ -86,20 +86,20 @@ pub struct PlantView {
     pub max: [f64; 3],
     /// Its meshes.
     pub parts: Vec<PartView>,
-    /// What they are made of.
+    /// Materials of the meshes.
     pub materials: Vec<MaterialView>,
-    /// What it grows around.
+    /// Obstacles that it grows around.
     pub obstacles: Vec<ObstacleView>,
 }
 
-/// How a drawing lies in the front view of its plant.
+/// Placement of a drawing in the front view of its plant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Front {
-    /// Metres of the drawing's unit.
+    /// Metres for each unit of the drawing.
     pub metres_per_unit: f64,
-    /// Where the plant's origin lies in the drawing.
+    /// Position of the plant's origin in the drawing, along x.
     pub x: f64,
-    /// Where the plant's origin lies in the drawing, y up.
+    /// Position of the plant's origin in the drawing, along y, up.
     pub y: f64,
 }
 
@@ -109,10 +109,10 @@ impl From<FrontView> for Front {
     }
 }
 
-/// What was not as one might expect.
+/// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct WarningView {
-    /// A word that stays, such as `unlike-a-plant`.
+    /// A stable word, such as `unlike-a-plant`.
     pub code: &'static str,
     /// A sentence in English.
     pub message: String,
@@ -138,22 +138,22 @@ pub struct PartView {
     pub material: usize,
 }
 
-/// How a mesh looks.
+/// Appearance of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MaterialView {
     /// Its name in files.
     pub name: String,
-    /// What it is of: bark, leaf, petal, ...
+    /// Kind of its organs: bark, leaf, petal, ...
     pub kind: &'static str,
     /// Linear red, green, blue.
     pub color: [f32; 3],
-    /// 0 to 1.
+    /// Roughness, 0 to 1.
     pub roughness: f32,
-    /// 0 to 1.
+    /// Translucency, 0 to 1.
     pub translucency: f32,
-    /// The texture has holes.
+    /// Whether the texture has holes.
     pub masked: bool,
-    /// Seen from both sides.
+    /// Whether it is visible from both sides.
     pub two_sided: bool,
     /// Its picture.
     pub texture: Option<TextureView>,
@@ -169,10 +169,10 @@ impl MaterialView {
     }
 }
 
-/// A picture by its number: pixels are asked for once.
+/// A picture by its number: its pixels are fetched once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct TextureView {
-    /// Its name in [`crate::Workspace::texture`]. Never given to another picture.
+    /// Its number for [`crate::Workspace::texture`], never reused for another picture.
     pub number: u32,
     /// Pixels across.
     pub width: u32,
@@ -180,7 +180,7 @@ pub struct TextureView {
     pub height: u32,
 }
 
-/// Pictures with the numbers by which shells know them.
+/// Pictures with the numbers by which shells refer to them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Textures {
     rows: Vec<(u32, Arc<Texture>)>,
@@ -192,7 +192,7 @@ impl Textures {
         self.rows.iter().find(|(n, _)| *n == number).map(|(_, t)| &**t)
     }
 
-    /// Forgets all but those of these views.
+    /// Drops all but those of these views.
     pub(crate) fn keep<'a>(&mut self, views: impl Iterator<Item = &'a PlantView>) {
         let seen = views.flat_map(|v| &v.materials).flat_map(MaterialView::pictures).map(|t| t.number);
         let seen = set_of(seen);
@@ -235,7 +235,7 @@ impl PlantView {
         }
     }
 
-    pub(crate) fn of(id: PlantId, model: &Model, textures: &mut Textures) -> Self {
+    pub(crate) fn from_model(id: PlantId, model: &Model, textures: &mut Textures) -> Self {
         let mut view = Self::empty(id);
         let bounds = model.bounds();
         if !bounds.is_empty() {
@@ -260,24 +260,24 @@ impl PlantView {
     }
 }
 
-/// What came of a plant.
+/// Outcome of making a plant.
 #[derive(Debug)]
 pub(crate) enum Outcome {
     Made,
-    /// Nothing to make it of yet.
+    /// There is nothing to make it of yet.
     Bare,
     Failed(SceneError),
 }
 
-/// The command that makes a plant's mesh coarser by a factor.
+/// Returns the command that makes a plant's mesh coarser by a factor.
 pub(crate) fn coarser(document: &Document, id: PlantId, factor: f64) -> Option<Command> {
     let coarse = |skin: &SkinSpec| {
         let detail = (skin.detail * factor).clamp(0.1, 8.0);
         SkinSpec { detail, ..skin.clone() }
     };
     match &document.plant(id)?.settings().maker {
-        Maker::Sketch(s) => Some(SketchCommand::SetSkin(coarse(&s.skin)).of(id)),
-        Maker::Tree(t) => Some(TreeCommand::SetSkin(coarse(&t.skin)).of(id)),
+        Maker::Sketch(s) => Some(SketchCommand::SetSkin(coarse(&s.skin)).for_plant(id)),
+        Maker::Tree(t) => Some(TreeCommand::SetSkin(coarse(&t.skin)).for_plant(id)),
         _ => None,
     }
 }

@@ -1,4 +1,4 @@
-//! The document that is worked on: plants, strokes, commands, gestures, undo.
+//! The open document: plants, strokes, commands, gestures, undo.
 
 use std::sync::Arc;
 
@@ -8,25 +8,26 @@ use burgeon::document::{
 };
 use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
-use burgeon::ink::{Drawing, Stroke, StrokeClass};
+use burgeon::ink::{Drawing, InkSample, Stroke, StrokeClass};
 use burgeon::mesh::Model;
 use burgeon::skin::{OrganMaterial, Pattern, Wearer};
 use burgeon::{Evaluator, ItemReport, LiteMap, Preset, Run, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::export_preview::ExportPreview;
+use crate::export_preview::{ExportPreview, PrintFigures};
 use crate::held::Held;
 use crate::kept::Kept;
 use crate::shown::Levels;
 use crate::view::{Outcome, Textures};
 use crate::{DocumentState, Scatter, WorkspaceError};
 
-/// Room between a new plant and the others, metres: as wide as the crown of a tree, or a hand.
+/// Room between a new tree and the other plants, metres: as wide as the crown of a tree.
 const TREE_ROOM: f64 = 4.0;
+/// Room between a new plant other than a tree and the others, metres: as wide as a hand.
 const ROOM: f64 = 0.25;
 
-/// What can be asked that is more than one [`document::Command`]. One step of undo each.
+/// Requests that take more than one [`document::Command`]. One step of undo each.
 ///
 /// ```
 /// let action: workspace::Action = serde_json::from_str(r#"{"add":{"name":"my oak","maker":{"tree":"oak"}}}"#)?;
@@ -36,23 +37,23 @@ const ROOM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Action {
-    /// An empty document in the place of this one.
+    /// Replaces the document by an empty one.
     New,
-    /// Adds a plant beside the others and chooses it. A sheet on which nothing was drawn gives way.
+    /// Adds a plant next to the others and chooses it. It replaces a sheet on which nothing was drawn.
     Add {
-        /// What it is called.
+        /// Its name.
         name: String,
         /// Its maker.
         maker: NewMaker,
     },
-    /// Makes a tree or a flower another species.
+    /// Gives a tree or a flower another species.
     Preset {
         /// The plant.
         plant: PlantId,
         /// The key of the preset.
         key: String,
     },
-    /// Puts the plants that a drawing shows in its place, each a drawing of its own.
+    /// Splits a drawing of several plants into drawings of one plant each.
     Split {
         /// The drawing.
         plant: PlantId,
@@ -77,10 +78,10 @@ pub enum NewMaker {
     Flower(String),
 }
 
-/// A document with its history, its plants as they were made last, and what the hand holds.
+/// A document with its history, its plants as they were made last, and the held tool.
 ///
-/// Guaranteed: after an error everything is as it was. What is shown never depends on what was asked before, but for
-/// drafts, gestures, and the numbers of textures.
+/// Guaranteed: after an error everything is as it was. Apart from drafts, gestures and the numbers of textures, the
+/// view never depends on earlier requests.
 ///
 /// ```
 /// use burgeon::Run;
@@ -98,7 +99,7 @@ pub struct Workspace {
     pub(crate) scene: SceneEvaluator,
     /// The plant that was chosen.
     pub(crate) current: Option<PlantId>,
-    pub(crate) draft: Option<Stroke>,
+    pub(crate) draft: Option<NewStroke>,
     /// The current plant while a stroke is drawn.
     pub(crate) preview: Option<Evaluator>,
     /// The plant and the revision whose classes the previews of a draft began with.
@@ -107,38 +108,41 @@ pub struct Workspace {
     pub(crate) previewed: bool,
     /// A model file that is shown instead of the scene.
     pub(crate) guest: Option<Model>,
-    /// Another plant of the same description, shown for a moment.
+    /// The same description with another seed, shown for a moment.
     pub(crate) variant: Option<Model>,
-    /// Trees that are still being made, much coarser.
+    /// Much coarser previews of trees that are still being made.
     pub(crate) coarse: LiteMap<PlantId, Model>,
-    /// An export that is shown before it is written.
+    /// The preview of an export.
     pub(crate) export_preview: Option<ExportPreview>,
-    /// What came of each plant at the last evaluation.
+    /// The last body that was made for a printer.
+    pub(crate) printed: Option<PrintFigures>,
+    /// Outcome of each plant at the last evaluation.
     pub(crate) outcomes: LiteMap<PlantId, Outcome>,
-    /// What each plant's meshes were made of in the last view: a revision, or a preview.
+    /// Source of each plant's meshes in the last view: a revision, or a preview.
     pub(crate) meshes: LiteMap<PlantId, Option<u64>>,
     pub(crate) kept: Kept,
-    /// What is shown coarser than it was made.
+    /// Plants that are shown coarser than they were made.
     pub(crate) levels: Levels,
-    /// Points that the shell has. Holding them keeps their addresses from being used again.
+    /// Strokes whose points the shell has. Holding them keeps their addresses from being used again.
     given: LiteMap<StrokeId, Arc<Stroke>>,
     pub(crate) textures: Textures,
     /// A tool that shapes a plant.
     pub(crate) held: Option<Held>,
     /// The photograph that the shell has.
     given_photo: Option<Arc<[u8]>>,
-    /// Where a plant was put that was added last, and where the next one is to be put.
+    /// Place along x of the plant that was added last, metres.
+    /// Place along x of the next plant, metres.
     placed: Option<f64>,
     place_next: Option<f64>,
 }
 
 impl Workspace {
-    /// The document as it is now, an open gesture included.
+    /// Returns the current document, including an open gesture.
     pub fn document(&self) -> &Document {
         self.editor.document()
     }
 
-    /// The plant on the sheet and in the panel: the one that was chosen, or the last.
+    /// Returns the plant on the sheet and in the panel: the chosen one, or the last.
     pub fn current(&self) -> Option<PlantId> {
         let document = self.editor.document();
         let chosen = self.current.filter(|&id| document.plant(id).is_some());
@@ -153,7 +157,7 @@ impl Workspace {
         self.current().ok_or(WorkspaceError::NoPlant)
     }
 
-    /// Chooses the plant that strokes, drafts, tools and exports are for.
+    /// Chooses the plant that strokes, drafts, tools and exports apply to.
     ///
     /// # Errors
     /// [`WorkspaceError::PlantGone`].
@@ -168,16 +172,16 @@ impl Workspace {
         Ok(())
     }
 
-    /// Starts empty and forgets the history: the memory of the document is given back.
+    /// Starts empty, drops the history and frees the memory of the document.
     pub fn close(&mut self) {
         let kept = Kept { most: self.kept.most, ..Kept::at_most(self.kept.limit) };
         *self = Self { kept, ..Self::default() };
     }
 
-    /// Does a command as one step of undo, or as part of the open gesture. A copy of a plant is chosen.
+    /// Runs a command as one step of undo, or as part of the open gesture. A copy of a plant is chosen.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: why it was refused.
+    /// [`WorkspaceError`]: the reason why it was refused.
     pub fn run(&mut self, command: impl Into<document::Command>) -> Result<(), WorkspaceError> {
         let command = command.into();
         self.let_go();
@@ -191,10 +195,10 @@ impl Workspace {
         Ok(())
     }
 
-    /// Does what takes more than one command, as one step of undo.
+    /// Performs an action of more than one command, as one step of undo.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: why it was refused.
+    /// [`WorkspaceError`]: the reason why it was refused.
     pub fn act(&mut self, action: &Action) -> Result<(), WorkspaceError> {
         match action {
             Action::New => self.run(SceneCommand::Open(Box::default())),
@@ -214,10 +218,10 @@ impl Workspace {
                 let opens = |p: &DocumentPlant| matches!(p.settings().maker, Maker::Flower(_));
                 if self.editor.document().plant(*plant).is_some_and(opens) {
                     let document::FlowerMaker { preset, spec, .. } = flower(key)?;
-                    return self.run(document::FlowerCommand::SetSpec(preset, spec).of(*plant));
+                    return self.run(document::FlowerCommand::SetSpec(preset, spec).for_plant(*plant));
                 }
                 let document::TreeSettings { preset, spec, .. } = preset(key)?;
-                self.run(document::TreeCommand::SetSpec(preset, spec).of(*plant))
+                self.run(document::TreeCommand::SetSpec(preset, spec).for_plant(*plant))
             }
             Action::Split { plant } => {
                 self.let_go();
@@ -234,21 +238,21 @@ impl Workspace {
         }
     }
 
-    /// Where the plants were put that the requests since the last call added: metres along x, of the last one.
+    /// Returns the place of the last plant that requests since the last call added: metres along x.
     ///
-    /// How wide the others are is known only where they were grown. A shell that repeats the requests without growing
-    /// them, as after a fault, names the place beforehand with [`Workspace::place_next`].
+    /// The widths of the others are known only where they were grown. A shell that repeats the requests without growing
+    /// them, as after a fault, sets the place beforehand with [`Workspace::place_next`].
     pub fn placed(&mut self) -> Option<f64> {
         self.place_next = None;
         self.placed.take()
     }
 
-    /// Puts the plant that the next request adds at this place along x, in metres, and not beside the others.
+    /// Sets the place of the plant that the next request adds, along x in metres, instead of next to the others.
     pub fn place_next(&mut self, x: f64) {
         self.place_next = Some(x);
     }
 
-    /// Adds a plant beside the others and chooses it. A sheet on which nothing was drawn gives way.
+    /// Adds a plant next to the others and chooses it. It replaces a sheet on which nothing was drawn.
     pub(crate) fn add_plant(&mut self, name: &str, maker: Maker) -> Result<(), WorkspaceError> {
         let document = self.editor.document();
         let blank = match document.plants() {
@@ -291,34 +295,43 @@ impl Workspace {
         Ok(())
     }
 
-    /// Adds a stroke to the current drawing and returns its number. `shown`: what its strokes were shown as when this one
-    /// was drawn, where that is news; nothing for those of which it was not clear. They are not read as something else
-    /// without clear evidence ([`SketchCommand::Draw`]).
+    /// Adds a stroke to the current drawing and returns its number. `shown`: the classes that its strokes were shown as
+    /// when this one was drawn, where they are new; none for strokes whose class was unclear. Reading departs from them
+    /// only for clear evidence ([`SketchCommand::Draw`]).
     ///
     /// # Errors
-    /// [`WorkspaceError`]: no point is finite, or the plant is no drawing.
+    /// [`WorkspaceError`]: no point is finite, or the plant is not a drawing.
     pub fn add_stroke(
         &mut self,
-        stroke: Stroke,
+        stroke: impl Into<NewStroke>,
         shown: Vec<(StrokeId, Option<StrokeClass>)>,
     ) -> Result<StrokeId, WorkspaceError> {
         self.draft = None;
         self.guest = None;
         let id = self.must()?;
-        self.editor.run(SketchCommand::Draw(stroke, shown).of(id))?;
+        self.editor.run(SketchCommand::Draw(stroke.into(), shown).for_plant(id))?;
         let last = self.editor.document().plant(id).and_then(|p| p.strokes().last());
         last.map(|s| s.id).ok_or(WorkspaceError::Internal("no stroke"))
     }
 
+    /// Gives a stroke of the current drawing other points ([`SketchCommand::Straighten`]).
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: the stroke is not there, or a point is not finite.
+    pub fn straighten(&mut self, stroke: StrokeId, samples: Vec<InkSample>) -> Result<(), WorkspaceError> {
+        let id = self.must()?;
+        Ok(self.editor.run(SketchCommand::Straighten(stroke, samples).for_plant(id))?)
+    }
+
     /// Shows a stroke that is still being drawn and is not in the document; one without points takes it away.
-    pub fn draft(&mut self, stroke: Stroke) {
-        self.draft = Some(stroke).filter(|s| !s.samples.is_empty());
+    pub fn draft(&mut self, stroke: impl Into<NewStroke>) {
+        self.draft = Some(stroke.into()).filter(|s| !s.stroke.samples.is_empty());
         if self.draft.is_some() {
             self.guest = None;
         }
     }
 
-    /// Opens a gesture: what is staged up to [`Workspace::commit`] is one step of this name.
+    /// Opens a gesture: the commands staged up to [`Workspace::commit`] form one step of this name.
     ///
     /// # Errors
     /// While another is open.
@@ -327,10 +340,10 @@ impl Workspace {
         Ok(self.editor.begin_gesture(name)?)
     }
 
-    /// Replaces what the open gesture did by one command.
+    /// Replaces the commands of the open gesture by one command.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: why it was refused.
+    /// [`WorkspaceError`]: the reason why it was refused.
     pub fn stage(&mut self, command: impl Into<document::Command>) -> Result<(), WorkspaceError> {
         let command = command.into();
         self.check(&command)?;
@@ -342,15 +355,15 @@ impl Workspace {
         self.editor.commit();
     }
 
-    /// Closes the gesture and takes back what it did.
+    /// Closes the gesture and takes its commands back.
     pub fn abandon(&mut self) {
         self.editor.cancel_gesture();
     }
 
-    /// Strokes of the current drawing as a drawing in our JSON, for a clipboard.
+    /// Returns strokes of the current drawing as a drawing in our JSON, for a clipboard.
     ///
     /// # Errors
-    /// [`WorkspaceError::NoStroke`] when none of them is there.
+    /// [`WorkspaceError::NoStroke`] when none of them exists.
     pub fn copy(&self, ids: &[StrokeId]) -> Result<Vec<u8>, WorkspaceError> {
         let plant = self.current_plant().ok_or(WorkspaceError::NoStroke)?;
         let chosen = plant.strokes().iter().filter(|s| ids.contains(&s.id));
@@ -365,10 +378,10 @@ impl Workspace {
         Ok(out)
     }
 
-    /// Adds the strokes of a drawing as text (our JSON, SVG, InkML), moved; returns their numbers.
+    /// Adds the strokes of a drawing as text (our JSON, SVG, InkML), moved by `by`; returns their numbers.
     ///
     /// # Errors
-    /// [`WorkspaceError`]: what is wrong with it.
+    /// [`WorkspaceError`]: the fault of the text.
     pub fn paste(&mut self, text: &str, by: DVec2) -> Result<Vec<StrokeId>, WorkspaceError> {
         let format = DrawingFormat::sniff(text.as_bytes()).ok_or(WorkspaceError::NoClipboard)?;
         let read = read_drawings(text.as_bytes(), format, "clipboard").next();
@@ -378,28 +391,28 @@ impl Workspace {
         }
         let id = self.must()?;
         let before = self.current_plant().map_or(0, |p| p.strokes().len());
-        let new = strokes.into_iter().map(|stroke| NewStroke { stroke, ..NewStroke::default() }).collect();
-        self.editor.run(SketchCommand::AddStrokes(new).of(id))?;
+        let new = strokes.into_iter().map(NewStroke::from).collect();
+        self.editor.run(SketchCommand::AddStrokes(new).for_plant(id))?;
         self.guest = None;
         let strokes = self.current_plant().map_or(&[][..], DocumentPlant::strokes);
         Ok(strokes.iter().skip(before).map(|s| s.id).collect())
     }
 
-    /// Puts a photograph (PNG) under the current drawing: left lower corner and width in the drawing's unit.
+    /// Puts a photograph (PNG) under the current drawing: lower left corner and width in the drawing's unit.
     ///
     /// # Errors
-    /// [`WorkspaceError::Photo`] when it is no PNG or too large.
+    /// [`WorkspaceError::Photo`] when it is not a PNG or too large.
     pub fn place_photo(&mut self, png: &[u8], at: DVec2, width: f64) -> Result<(), WorkspaceError> {
         let mut photo = Photo::new(png.into())?;
         photo.place = PhotoPlace { x: at.x, y: at.y, width, ..photo.place };
-        Ok(self.editor.run(SketchCommand::SetPhoto(Box::new(photo)).of(self.must()?))?)
+        Ok(self.editor.run(SketchCommand::SetPhoto(Box::new(photo)).for_plant(self.must()?))?)
     }
 
-    /// Gives organs of the current plant a material with a picture (PNG): those that are read from `strokes`, or, without
-    /// any, all of a kind. One step of undo.
+    /// Gives organs of the current plant a material with a picture (PNG): those read from `strokes`, or, without any,
+    /// all of a kind. One step of undo.
     ///
     /// # Errors
-    /// [`WorkspaceError::Picture`] when it is no PNG or too large; [`WorkspaceError::Command`].
+    /// [`WorkspaceError::Picture`] when it is not a PNG or too large; [`WorkspaceError::Command`].
     pub fn wear_picture(
         &mut self,
         (wearer, strokes): (Wearer, Vec<StrokeId>),
@@ -411,10 +424,10 @@ impl Workspace {
         let worn =
             Some(OrganMaterial { pattern: Pattern::Picture, picture: Some(picture.name()), ..material });
         let known = self.current_plant().is_some_and(|p| p.settings().pictures.contains_key(&picture.name()));
-        let add = (!known).then(|| PlantCommand::AddPicture(picture).of(id));
+        let add = (!known).then(|| PlantCommand::AddPicture(picture).for_plant(id));
         let wear = match strokes.is_empty() {
-            true => PlantCommand::Wear(wearer, worn).of(id),
-            false => SketchCommand::SetMaterial(strokes, worn).of(id),
+            true => PlantCommand::Wear(wearer, worn).for_plant(id),
+            false => SketchCommand::SetMaterial(strokes, worn).for_plant(id),
         };
         self.let_go();
         self.editor.begin_gesture("material")?;
@@ -428,7 +441,7 @@ impl Workspace {
         Ok(())
     }
 
-    /// The photograph's file if the shell has another one; it counts as had from now on.
+    /// Returns the photograph's file if the shell has another one; it counts as delivered from now on.
     pub fn fresh_photo(&mut self) -> Option<Arc<[u8]>> {
         let photo = self.current_plant()?.settings().photo().map(|p| Arc::clone(p.png()))?;
         let had = self.given_photo.as_ref().is_some_and(|had| Arc::ptr_eq(&photo, had));
@@ -436,26 +449,27 @@ impl Workspace {
         (!had).then_some(photo)
     }
 
-    /// Takes the last step back and returns its name.
+    /// Undoes the last step and returns its name.
     pub fn undo(&mut self) -> Option<&str> {
         self.guest = None;
         self.let_go();
         self.editor.undo()
     }
 
-    /// Does the last step that was taken back again and returns its name.
+    /// Redoes the last undone step and returns its name.
     pub fn redo(&mut self) -> Option<&str> {
         self.guest = None;
         self.let_go();
         self.editor.redo()
     }
 
-    /// The document as lists and panels show it, without points.
+    /// Returns the document as lists and panels show it, without points.
     pub fn state(&self) -> DocumentState<'_> {
-        DocumentState::of(&self.editor, self.current())
+        DocumentState::from_editor(&self.editor, self.current())
     }
 
-    /// Strokes of the current drawing whose points the shell does not have yet; they count as had from now on.
+    /// Returns strokes of the current drawing whose points the shell does not have yet; they count as delivered from
+    /// now on.
     pub fn fresh_strokes(&mut self) -> Vec<StrokeId> {
         let mut fresh = Vec::new();
         let mut given = LiteMap::new();
@@ -470,13 +484,13 @@ impl Workspace {
         fresh
     }
 
-    /// A stroke of the current drawing.
+    /// Returns a stroke of the current drawing.
     pub fn stroke(&self, id: StrokeId) -> Option<&Stroke> {
         let plant = self.current_plant()?;
         plant.strokes().get(plant.row(id)?).map(|s| &*s.stroke)
     }
 
-    /// The document changed, or another plant is shown: what was held is let go.
+    /// Drops the held tool after a change of the document, or of the shown plant.
     pub(crate) fn let_go(&mut self) {
         self.held = None;
     }

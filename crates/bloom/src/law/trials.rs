@@ -1,4 +1,4 @@
-//! Laws of made series, whose truth is known: what is determined, and how far from it predictions are.
+//! Laws of synthetic series with known truth: whether they are determined, and the errors of their predictions.
 
 use super::*;
 use base::{Draw, Seed};
@@ -12,8 +12,8 @@ fn fitted(days: &[f64], values: Vec<f64>) -> RegionLaw {
     fit_sizes("x", &series, Offset::Auto, &Run::plain()).unwrap().laws.remove(0)
 }
 
-/// 160 single series of noise and 160 of straight growth with noise, of 5 to 8 days: what determines nothing is not said to be
-/// determined. The rule is that of docs/bloom.md.
+/// 160 single series of noise and 160 of straight growth with noise, of 5 to 8 days: series that determine nothing are
+/// reported as not determined. The rule is that of docs/bloom.md.
 #[test]
 fn noise_and_straight_growth_of_one_series_determine_no_law() {
     let mut determined = [0; 2];
@@ -84,7 +84,7 @@ fn three_days_that_determine_nothing_say_so_and_have_the_better_baseline() {
     assert_eq!(still.final_value(), None);
 }
 
-/// A curve of a known form, a tenth of its size on the first day, measured with noise.
+/// Returns the value of a curve of a known form that starts at a tenth of its final size.
 fn grown(form: Form, day: f64) -> f64 {
     let e = |x: f64| base::ops::exp(x);
     match form {
@@ -94,8 +94,8 @@ fn grown(form: Form, day: f64) -> f64 {
     }
 }
 
-/// Curves of all three forms, which the fit is not told: whether they are found to be curves, and whether new measurements lie in
-/// their intervals, nine times of ten.
+/// Curves of all three forms, unknown to the fit: whether they are recognised as curves, and whether new measurements
+/// lie in their intervals, nine times of ten.
 #[test]
 fn curves_of_each_form_are_determined_and_their_intervals_hold() {
     for form in Form::LAWS {
@@ -119,8 +119,8 @@ fn curves_of_each_form_are_determined_and_their_intervals_hold() {
     }
 }
 
-/// The end that is told is that of the curve with the constant under it, and so is its error: K by itself may be thousands of times as
-/// much where a constant takes most of it away again.
+/// The reported end is that of the curve with the constant under it, and so is its error: K by itself may be thousands
+/// of times as large if a constant cancels most of it.
 #[test]
 fn the_error_of_the_end_is_that_of_the_value_and_not_of_k() {
     let (mut inside, mut all, mut widest) = (0, 0, 0.0_f64);

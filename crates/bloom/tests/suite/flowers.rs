@@ -1,4 +1,4 @@
-//! Every flower that comes with the program, at days and between them.
+//! Every flower that comes with the program, on days and between them.
 
 use base::Seed;
 use bloom::{Aestivation, Fate, FlowerSpec, PartTriangle, Whorl, preset};
@@ -9,19 +9,22 @@ fn share(rows: &[PartTriangle]) -> f64 {
     bloom::crossed(rows).iter().flatten().count() as f64 / rows.len().max(1) as f64
 }
 
-/// The keyframes that a bloom has.
+/// Keyframes of a bloom.
 const FRAMES: u32 = 20;
 
-fn at(spec: &FlowerSpec, share: f64) -> Plant {
-    spec.at((spec.opening_days + spec.wilting_days) * share, &spec.own_law(), Seed::new(1))
+fn flower_at_share(spec: &FlowerSpec, share: f64) -> Plant {
+    spec.make_on_day((spec.opening_days + spec.wilting_days) * share, &spec.own_law(), Seed::new(1))
 }
 
-/// Stamens, disc, fruit, sepals, leaves and stem belong to it, and what a player shows half way between two keyframes.
+/// Stamens, disc, fruit, sepals, leaves and stem are included, and the display of a player half way between two
+/// keyframes.
 #[test]
 fn no_part_passes_through_another_at_keyframes_or_between_them() {
     for name in FlowerSpec::PRESETS {
         let spec = preset(name).unwrap();
-        let rows = |k: u32| bloom::part_triangles(&at(&spec, f64::from(k) / f64::from(FRAMES - 1)), None);
+        let rows = |k: u32| {
+            bloom::part_triangles(&flower_at_share(&spec, f64::from(k) / f64::from(FRAMES - 1)), None)
+        };
         let (mut worst, mut between, mut told) = (0.0_f64, 0.0_f64, String::new());
         let mut before = rows(0);
         for k in 0..FRAMES {
@@ -43,13 +46,13 @@ fn no_part_passes_through_another_at_keyframes_or_between_them() {
         }
         println!("| {name} |{told} | {:.3} | {:.3} |", worst * 100.0, between * 100.0);
         assert!(worst < 0.001, "{name}: {worst} at a keyframe");
-        // A petal that falls goes straight from keyframe to keyframe.
+        // A falling petal moves straight from keyframe to keyframe.
         let falls = spec.whorls.iter().any(|w| w.fate == Fate::Drop);
         assert!(between < if falls { 0.01 } else { 0.003 }, "{name}: {between} between keyframes");
     }
 }
 
-/// Corners of all organs of a kind, where they are.
+/// Returns the corners of all organs of a kind, in place.
 fn corners(plant: &Plant, kind: OrganKind) -> Vec<Vec<DVec3>> {
     let organs = plant.organs.iter().filter(|o| o.kind == kind);
     organs
@@ -73,11 +76,12 @@ fn petals_that_drop_lie_on_the_ground_in_the_end_and_none_on_another() {
         let lowest = |plant: &Plant| {
             corners(plant, OrganKind::Petal).into_iter().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min)
         };
-        let end = at(&spec, 1.0);
+        let end = flower_at_share(&spec, 1.0);
         assert!(top(&end) < 0.5 * spec.stalk_m, "{name}: {}", top(&end));
         assert!(lowest(&end) >= 0.0 && lowest(&end) < 0.002, "{name}: {}", lowest(&end));
         assert!(
-            lowest(&at(&spec, spec.opening_days / (spec.opening_days + spec.wilting_days))) > 0.03,
+            lowest(&flower_at_share(&spec, spec.opening_days / (spec.opening_days + spec.wilting_days)))
+                > 0.03,
             "{name}"
         );
     }
@@ -86,7 +90,7 @@ fn petals_that_drop_lie_on_the_ground_in_the_end_and_none_on_another() {
 #[test]
 fn flowers_of_a_cluster_open_one_after_another() {
     let spec = preset("orchid").unwrap();
-    let flower = at(&spec, 0.35);
+    let flower = flower_at_share(&spec, 0.35);
     let wide = |f: usize| {
         let of = flower
             .organs
@@ -113,7 +117,7 @@ fn petals_of_a_ring_open_one_after_another_and_a_fused_ring_stays_closed() {
         ..FlowerSpec::default()
     };
     let tips = |spec: &FlowerSpec| {
-        let petals = corners(&spec.at(2.5, &spec.own_law(), Seed::new(1)), OrganKind::Petal);
+        let petals = corners(&spec.make_on_day(2.5, &spec.own_law(), Seed::new(1)), OrganKind::Petal);
         petals.iter().map(|p| p[p.len() - 8]).map(|p| (p.x * p.x + p.z * p.z).sqrt()).collect::<Vec<f64>>()
     };
     let spread = |all: &[f64]| {
@@ -123,7 +127,7 @@ fn petals_of_a_ring_open_one_after_another_and_a_fused_ring_stays_closed() {
     assert!(spread(&late) > 4.0 * spread(&even) + 1e-4, "{even:?} {late:?}");
     let tube = ring(Aestivation::Fused, 0.0);
     for day in [0.0, 3.0, 6.0, 10.0] {
-        let petals = corners(&tube.at(day, &tube.own_law(), Seed::new(1)), OrganKind::Petal);
+        let petals = corners(&tube.make_on_day(day, &tube.own_law(), Seed::new(1)), OrganKind::Petal);
         let columns = tube.mesh.columns as usize + 1;
         for (k, petal) in petals.iter().enumerate() {
             let next = &petals[(k + 1) % petals.len()];

@@ -9,8 +9,8 @@ fn numbers(text: &str) -> Vec<f64> {
     text.split(',').map(|w| w.parse().unwrap()).collect()
 }
 
-/// Relative to the value, but never finer than a thousandth of its standard error: a parameter that the series
-/// does not determine is not determined by scipy either.
+/// Whether two values agree, relative to the value but never finer than a thousandth of its standard error: a parameter
+/// that the series does not determine is not determined by scipy either.
 fn close(got: f64, want: f64, standard_error: f64) -> bool {
     (got - want).abs() <= 1e-6 * want.abs().max(standard_error)
 }

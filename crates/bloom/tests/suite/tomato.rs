@@ -1,4 +1,4 @@
-//! The growing tomato of the shared data: split, matched, and each day predicted from the others.
+//! The growing tomato of the shared data: segmented, matched, and each day predicted from the others.
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "tests; what they measure is told")]
 
 use crate::missing;
@@ -10,7 +10,7 @@ use bloom::{
 use glam::DVec3;
 use std::path::Path;
 
-/// Millimetres with +Z up, as the scanner wrote them, to metres with +Y up.
+/// Converts millimetres with +Z up, as the scanner wrote them, to metres with +Y up.
 fn turned(p: [f64; 3]) -> DVec3 {
     DVec3::new(p[0], p[2], -p[1]) * 1e-3
 }
@@ -61,7 +61,7 @@ fn stages() -> Option<Vec<Stage>> {
     Some(stages)
 }
 
-fn told(what: &str, e: &ShapeError) {
+fn print_error(what: &str, e: &ShapeError) {
     let (a, b) = (e.to_model, e.to_scan);
     println!(
         "{what}: paper {:.2} mean {:.2} rms {:.2} max {:.2} mm, back mean {:.2} rms {:.2} max {:.2} mm, within 2 mm {:.1} %",
@@ -105,21 +105,21 @@ fn the_series_is_split_alike_and_every_day_is_predicted() {
     }
     let motion = Motion::new(&stages, law, MotionSpec::default(), &run).unwrap();
     for (organ, from, to, r) in &motion.residuals {
-        told(&format!("residual {organ} {from} -> {to}"), r);
+        print_error(&format!("residual {organ} {from} -> {to}"), r);
     }
     for (k, day) in [0.0, 1.0, 5.0].into_iter().enumerate() {
-        let e = compare(&all(&stages[k]), &motion.at(day, &run).unwrap(), &run).unwrap();
-        told(&format!("through all stages, day {day}"), &e);
+        let e = compare(&all(&stages[k]), &motion.points_on_day(day, &run).unwrap(), &run).unwrap();
+        print_error(&format!("through all stages, day {day}"), &e);
         assert!(e.to_model.paper < 0.001, "{e:?}");
     }
-    // The middle day from the first and the last alone, pose not told apart.
+    // The middle day from the first and the last alone, with the pose not separated.
     let ends = [stages[0].clone(), stages[2].clone()];
     let even = GrowthLaw::even(5.0, 10.0);
     for (what, straight) in [("even pace", false), ("straight lines", true)] {
         let spec = MotionSpec { straight, ..MotionSpec::default() };
         let motion = Motion::new(&ends, even.clone(), spec, &run).unwrap();
-        let e = compare(&all(&stages[1]), &motion.at(1.0, &run).unwrap(), &run).unwrap();
-        told(&format!("6 March left out, {what}"), &e);
+        let e = compare(&all(&stages[1]), &motion.points_on_day(1.0, &run).unwrap(), &run).unwrap();
+        print_error(&format!("6 March left out, {what}"), &e);
         if !straight {
             assert!(e.to_model.paper < 0.003, "{e:?}");
         }
@@ -145,7 +145,7 @@ fn the_plant_was_turned_and_moved_and_its_organs_with_it() {
         let back = settled.stages[k].organs.iter().flat_map(|o| &o.points).map(|p| pose.apply(*p));
         assert!(back.zip(all(stage)).all(|(a, b)| a.distance(b) < 1e-9), "day {}", stage.day);
     }
-    // The three days determine no law of a leaf's place: it swings more than it grows.
+    // The three days determine no law of a leaf's position: it swings more than it grows.
     let law = fit_stages("tomato", &settled.stages, &LawSpec::default(), &Run::plain()).unwrap();
     for l in law.laws.iter().filter(|l| l.is_determined()) {
         let (law, line) = (l.loo_rmse.unwrap(), l.straight_rmse.unwrap());
@@ -203,7 +203,7 @@ fn scans_in_other_axes_among_the_days_are_found() {
             let right = matches!(found[..], [(k, beside, sure, Oddity::Turned(_))] if k == row || !sure && beside == row);
             assert!(right || (row == 2 && found.is_empty()), "row {row}, {what}: {found:?}");
         }
-        // Two seed leaves are their own mirror image: nothing is told, right or wrong.
+        // Two seed leaves are their own mirror image: nothing is reported, right or wrong.
         let mirrored = changed(&|p| DVec3::new(-p.x, p.y, p.z));
         println!("row {row}, mirrored: {mirrored:?}");
         assert!(mirrored.is_empty(), "{mirrored:?}");

@@ -10,21 +10,21 @@ use bloom::{fit_stages, leave_one_out, preset, settle};
 use glam::DVec3;
 use plant::{OrganKind, Shape};
 
-/// A lily whose head nods as it opens, by the same law: what moves by another pace than its petals is no growth.
+/// Makes a lily whose head nods as it opens, by the same law: motion at another pace than its petals' is not growth.
 fn lily() -> FlowerSpec {
     FlowerSpec { nods: Nods::default(), ..preset("lily").unwrap() }
 }
 
-/// The outer petals of a lily on a day, each an organ with `noise` on every point.
+/// Returns the outer petals of a lily on a day, each an organ with `noise` on every point.
 fn stage(day: f64, law: &GrowthLaw, noise: f64) -> Stage {
-    let plant = lily().at(day, law, Seed::new(1));
+    let plant = lily().make_on_day(day, law, Seed::new(1));
     let petals = plant.organs.iter().filter(|o| o.kind == OrganKind::Petal);
     let mut s = Seed::new(day.to_bits()).stream(Draw::Test);
     let organs = petals.take(3).enumerate().map(|(k, o)| {
         let Shape::Sheet(sheet) = &plant.shapes[o.shape.index()] else { panic!("a petal is a sheet") };
         let at: Vec<DVec3> = sheet.points.iter().map(|&p| o.frame.place(p, o.scale)).collect();
         let mut jitter = || noise * DVec3::new(s.range(-1.0, 1.0), s.range(-1.0, 1.0), s.range(-1.0, 1.0));
-        // The joint itself, and the way that the sheet knows.
+        // The joint itself, and the path that the sheet knows.
         ScanOrgan {
             name: format!("petal-{}", k + 1),
             colors: Vec::new(),
@@ -103,7 +103,7 @@ fn a_day_that_is_left_out_is_nearer_to_the_model_than_to_its_rivals() {
     }
 }
 
-/// A law of three regions with a rate each, and of the size.
+/// Makes a law of three regions with a rate each, and of the size.
 fn regions(rates: [f64; 3], determined: bool) -> GrowthLaw {
     let mut law = GrowthLaw::logistic("made", 6.0, 0.95);
     law.regions = 3;
@@ -134,7 +134,7 @@ fn laws_of_regions_open_a_petal_region_by_region() {
     // Its petals turn at their base as well as at their tip; those of a lily hardly do.
     let tulip = preset("tulip").unwrap();
     let points = |law: &GrowthLaw| {
-        let plant = tulip.at(3.0, law, Seed::new(1));
+        let plant = tulip.make_on_day(3.0, law, Seed::new(1));
         assert!(bloom::part_overlap(&plant, None) <= 0.0, "no petal crosses another");
         let first = plant.organs.iter().find(|o| o.kind == OrganKind::Petal).unwrap().clone();
         let Shape::Sheet(sheet) = &plant.shapes[first.shape.index()] else { panic!("a petal is a sheet") };
@@ -151,7 +151,7 @@ fn laws_of_regions_open_a_petal_region_by_region() {
     assert!(high > 1e-3 && high > 5.0 * low, "{low} {high}");
     let base = points(&regions([3.0, 0.95, 0.95], true));
     assert!(apart(&base, n - n / 6..n) > 1e-3, "the tip goes with the base");
-    // What the stages do not determine opens nothing: the pace is even.
+    // Parameters that the stages do not determine open nothing: the pace is even.
     let none = regions([0.95, 0.95, 3.0], false);
     assert!(!none.sets_pace() && regions([0.95; 3], true).sets_pace());
     let even_pace = points(&GrowthLaw::even(0.0, 6.0));

@@ -9,7 +9,7 @@ use tiff::tags::Tag;
 
 use super::{GroundError, png_gray};
 
-/// What the grey levels of a picture mean.
+/// Scale of the grey levels of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapScale {
     /// Side of a cell in metres, above 0.
@@ -24,8 +24,8 @@ pub struct MapScale {
 
 /// Heights at the centres of square cells, bilinear between.
 ///
-/// Rows go from north (-Z) to south, columns from west (-X) to east. A place has a height if the four cells around it have
-/// data; so the outermost half of a cell is outside.
+/// Rows go from north (-Z) to south, columns from west (-X) to east. A place has a height if the four cells around it
+/// have data; so the outermost half of each cell at the edge is outside.
 ///
 /// ```
 /// use glam::DVec2;
@@ -37,14 +37,15 @@ pub struct MapScale {
 pub struct HeightMap {
     columns: usize,
     rows: usize,
-    /// NaN: no data.
+    /// Heights, metres; NaN for no data.
     heights_m: Vec<f32>,
     cell_m: DVec2,
     /// Centre of the first cell: x and z.
     first: DVec2,
 }
 
-/// The last cell's share is never all of it, so that a place on the very edge lies in a cell.
+/// Splits a coordinate into a cell and the share within it; the share stays below 1, so that a place on the very edge
+/// lies in a cell.
 fn split(at: f64, count: usize) -> Option<(usize, f64)> {
     let last = count.checked_sub(2)?;
     if !(0.0..=(last + 1) as f64).contains(&at) {
@@ -55,11 +56,12 @@ fn split(at: f64, count: usize) -> Option<(usize, f64)> {
 }
 
 impl HeightMap {
-    /// Of heights in metres, row by row; NaN where there is no data. `cell_m`: sides of a cell; `first`: x and z of the
-    /// centre of the first cell.
+    /// Builds a map from heights in metres, row by row; NaN for no data. `cell_m`: sides of a cell; `first`: x and z
+    /// of the centre of the first cell.
     ///
     /// # Errors
-    /// [`GroundError`]: fewer than two rows or columns, rows that are not full, sides that are not above 0, or no data at all.
+    /// [`GroundError`]: fewer than two rows or columns, rows that are not full, sides that are not above 0, or no
+    /// data at all.
     pub fn new(
         columns: usize,
         heights_m: Vec<f32>,
@@ -82,10 +84,10 @@ impl HeightMap {
         Ok(Self { columns, rows, heights_m, cell_m, first })
     }
 
-    /// A picture of 16 bits of grey, its middle at the origin.
+    /// Reads a picture of 16 bits of grey, with its centre at the origin.
     ///
     /// # Errors
-    /// [`GroundError`]: no such picture, 8 bits, too large, or a scale that makes no ground.
+    /// [`GroundError`]: no such picture, 8 bits, too large, or a scale that gives no ground.
     pub fn from_png(bytes: &[u8], scale: &MapScale, run: &Run<'_>) -> Result<Self, GroundError> {
         let MapScale { metres_per_cell: side, low_m, high_m, no_data } = *scale;
         if !(side > 0.0 && side.is_finite() && low_m.is_finite() && high_m.is_finite()) {
@@ -105,12 +107,13 @@ impl HeightMap {
         Self::new(gray.width, heights, DVec2::splat(side), -0.5 * side * size)
     }
 
-    /// A GeoTIFF of heights in metres, in a projection in metres: whole numbers or floats, in strips or tiles, plain, deflated
-    /// or LZW. `origin_m`: easting and northing of the origin, [`Stand::origin_m`](crate::Stand::origin_m) of an inventory;
-    /// none: the middle of the map, rounded to metres, which is returned with the map.
+    /// Reads a GeoTIFF of heights in metres, in a projection in metres: whole numbers or floats, in strips or tiles,
+    /// plain, deflated or LZW. `origin_m`: easting and northing of the origin,
+    /// [`Stand::origin_m`](crate::Stand::origin_m) of an inventory; none: the centre of the map, rounded to metres,
+    /// which is returned with the map.
     ///
     /// # Errors
-    /// [`GroundError`]: no such picture, 8 bits, a map in degrees, turned, or one that does not say its scale and place.
+    /// [`GroundError`]: no such picture, 8 bits, a map in degrees, rotated, or one without scale and place.
     pub fn from_geotiff(
         bytes: &[u8],
         origin_m: Option<DVec2>,
@@ -146,7 +149,7 @@ impl HeightMap {
         Ok((Self::new(width as usize, heights, place.cell, first)?, origin))
     }
 
-    /// Height and normal; none outside and where a cell around has no data.
+    /// Returns height and normal; none outside, and next to a cell without data.
     pub(super) fn sample(&self, x: f64, z: f64) -> Option<(f64, DVec3)> {
         let at = (DVec2::new(x, z) - self.first) / self.cell_m;
         let (column, u) = split(at.x, self.columns)?;
@@ -160,26 +163,29 @@ impl HeightMap {
         height.is_finite().then(|| (height, DVec3::new(-slope_x, 1.0, -slope_z).normalize()))
     }
 
-    /// The least and the greatest x and z that have a height.
+    /// Returns the least and the greatest x and z that have a height.
     pub fn extent_m(&self) -> [DVec2; 2] {
         let size = DVec2::new((self.columns - 1) as f64, (self.rows - 1) as f64);
         [self.first, self.first + size * self.cell_m]
     }
 }
 
-/// Where a GeoTIFF lies.
+/// Place of a GeoTIFF.
 struct Placement {
     cell: DVec2,
     /// Easting and northing of the centre of the first cell.
     first: DVec2,
 }
 
-/// Keys of the GeoTIFF directory and their values (OGC 19-008r4).
+/// Key of the type of coordinates in the GeoTIFF directory (OGC 19-008r4).
 const MODEL_TYPE: u16 = 1024;
+/// Its value for longitude and latitude.
 const GEOGRAPHIC: u16 = 2;
+/// Key of the meaning of a cell's position (OGC 19-008r4).
 const RASTER_TYPE: u16 = 1025;
+/// Its value for points rather than areas.
 const PIXEL_IS_POINT: u16 = 2;
-/// Cells of a projection are larger; those of a map in degrees are smaller.
+/// Least side of a cell of a projection in metres; the cells of a map in degrees are smaller.
 const LEAST_CELL: f64 = 0.005;
 
 impl Placement {
@@ -213,7 +219,7 @@ impl Placement {
     }
 }
 
-/// Heights as floats, NaN for no data.
+/// Returns heights as floats, NaN for no data.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,

@@ -1,11 +1,11 @@
-//! Pictures that say where trees may stand.
+//! Pictures that control where trees may stand.
 
 use base::Run;
 use glam::DVec2;
 
 use super::{GroundError, png_gray};
 
-/// A picture that is stretched over the area of a stand: how much of the density is wanted where, 0 to 1.
+/// A picture that is stretched over the area of a stand: the share of the density at each place, 0 to 1.
 ///
 /// The first row is the northern edge (-Z), the first column the western one (-X).
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// A picture of 8 bits: black keeps trees out, white lets all stand. Colours are turned into grey.
+    /// Reads a picture of 8 bits: black keeps trees out, white admits all. Colours are converted to grey.
     ///
     /// # Errors
     /// [`GroundError`]: no such picture, or too large.
@@ -25,14 +25,14 @@ impl Mask {
         Ok(Self { columns: gray.width, rows: gray.height, levels: gray.bytes })
     }
 
-    /// Its white where it was black.
+    /// Exchanges black and white.
     #[must_use]
     pub fn inverted(mut self) -> Self {
         self.levels.iter_mut().for_each(|l| *l = u8::MAX - *l);
         self
     }
 
-    /// The share at a place in shares of the area, 0 to 1 each; that of the nearest cell.
+    /// Returns the share at a place, given in shares of the area, 0 to 1 each; it is that of the nearest cell.
     pub fn share(&self, at: DVec2) -> f64 {
         let index = |at: f64, count: usize| {
             (base::ops::whole(at * count as f64) as usize).min(count.saturating_sub(1))
@@ -41,14 +41,14 @@ impl Mask {
         self.levels.get(k).map_or(1.0, |&l| f64::from(l) / f64::from(u8::MAX))
     }
 
-    /// Whether cells are square on an area of these sides, to a cell.
+    /// Returns whether cells are square on an area of these sides, to a cell.
     pub fn fits(&self, size_m: DVec2) -> bool {
         let (columns, rows) = (self.columns as f64, self.rows as f64);
         let wanted = columns * size_m.y / size_m.x;
         (wanted - rows).abs() <= 1.0 || (rows * size_m.x / size_m.y - columns).abs() <= 1.0
     }
 
-    /// Columns and rows.
+    /// Returns the numbers of columns and rows.
     pub const fn size(&self) -> [usize; 2] {
         [self.columns, self.rows]
     }

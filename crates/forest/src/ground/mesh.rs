@@ -1,4 +1,4 @@
-//! Triangles to stand on.
+//! Triangles as the ground of a stand.
 
 use base::{Counted, Run};
 use glam::{DVec2, DVec3};
@@ -7,7 +7,7 @@ use super::GroundError;
 
 /// Triangles by the cells of a grid over them.
 ///
-/// Where several lie above one another, trees stand on the highest.
+/// If several lie above one another, trees stand on the highest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMesh {
     corners: Vec<[DVec3; 3]>,
@@ -15,21 +15,21 @@ pub struct GroundMesh {
     side: f64,
     columns: usize,
     rows: usize,
-    /// Where the triangles of each cell begin in `order`, and one more.
+    /// Start of the triangles of each cell in `order`, and the end of the last.
     starts: Vec<u32>,
     order: Vec<u32>,
 }
 
-/// Most cells, in the mean, that triangles may cross: a mesh of slivers crosses many.
+/// Most cells that a triangle may cross on average: a mesh of slivers crosses many.
 const MOST_CROSSINGS: usize = 64;
 
 impl GroundMesh {
-    /// Of vertices and the triangles between them.
+    /// Builds a ground from vertices and the triangles between them.
     ///
-    /// Triangles that stand upright, or have vertices that are not finite, are left out. Cost: linear.
+    /// Vertical triangles, and those with vertices that are not finite, are left out. Cost: linear.
     ///
     /// # Errors
-    /// [`GroundError`]: no triangle that one could stand on, a vertex that is not there, or more than the budget allows.
+    /// [`GroundError`]: no usable triangle, a missing vertex, or more than the budget allows.
     pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], run: &Run<'_>) -> Result<Self, GroundError> {
         run.budget.check(Counted::Obstacles, triangles.len() as u64, "simplify the ground")?;
         let mut corners: Vec<[DVec3; 3]> = Vec::with_capacity(triangles.len());
@@ -95,7 +95,7 @@ impl GroundMesh {
         (index(at.x, self.columns), index(at.y, self.rows))
     }
 
-    /// The cells of the box around a triangle.
+    /// Returns the cells of the box around a triangle.
     fn cells(&self, triangle: usize) -> impl Iterator<Item = usize> + use<> {
         let points = self.corners[triangle].map(flat);
         let (x0, y0) = self.cell(points[0].min(points[1]).min(points[2]));
@@ -104,7 +104,7 @@ impl GroundMesh {
         (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| y * columns + x))
     }
 
-    /// Height and normal on the highest triangle at a place.
+    /// Returns height and normal on the highest triangle at a place.
     pub(super) fn sample(&self, x: f64, z: f64) -> Option<(f64, DVec3)> {
         let p = DVec2::new(x, z);
         let size = DVec2::new(self.columns as f64, self.rows as f64) * self.side;
@@ -118,7 +118,7 @@ impl GroundMesh {
             let (u, v, w) = (flat(b - a), flat(c - a), p - flat(a));
             let area = u.perp_dot(v);
             let (s, t) = (w.perp_dot(v) / area, u.perp_dot(w) / area);
-            // A place on an edge is on both sides, whatever is lost by rounding.
+            // A place on an edge belongs to both sides, in spite of rounding.
             if s < -1e-9 || t < -1e-9 || s + t > 1.0 + 1e-9 {
                 continue;
             }

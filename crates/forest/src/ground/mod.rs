@@ -14,7 +14,7 @@ pub use map::{HeightMap, MapScale};
 pub use mask::Mask;
 pub use mesh::GroundMesh;
 
-/// What a stand grows on. Coordinates are those of [`Stand`]: +X east, +Y up, +Z south.
+/// Ground of a stand. Coordinates are those of [`Stand`]: +X east, +Y up, +Z south.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Ground {
     /// The plane y = 0.
@@ -27,7 +27,8 @@ pub enum Ground {
 }
 
 impl Ground {
-    /// Height at a place; none outside of the ground and where it has no data. Cost: constant; on triangles, those of one cell.
+    /// Returns the height at a place; none outside of the ground and where it has no data. Cost: constant; on
+    /// triangles, linear in those of one cell.
     ///
     /// ```
     /// assert_eq!(forest::Ground::Flat.height_m(3.0, 4.0), Some(0.0));
@@ -40,7 +41,7 @@ impl Ground {
         }
     }
 
-    /// Unit normal at a place, upwards; none as [`height_m`](Self::height_m).
+    /// Returns the unit normal at a place, upwards; none as for [`height_m`](Self::height_m).
     pub fn normal(&self, x: f64, z: f64) -> Option<DVec3> {
         match self {
             Self::Flat => Some(DVec3::Y),
@@ -49,11 +50,11 @@ impl Ground {
         }
     }
 
-    /// Sets trees onto the ground, and leans them: `lean` 0 leaves them upright, 1 sets them square to the slope. What stands
-    /// outside of the ground stays where it is; returns how many do.
+    /// Sets trees onto the ground, and leans them: `lean` 0 leaves them upright, 1 sets them square to the slope.
+    /// Trees outside of the ground stay where they are; returns their number.
     ///
     /// # Errors
-    /// [`Cancelled`]: some trees may be set already.
+    /// [`Cancelled`]: some trees may already be set.
     pub fn set_down(&self, stand: &mut Stand, lean: f64, run: &Run<'_>) -> Result<u32, Cancelled> {
         let mut outside = 0;
         for trees in stand.trees.chunks_mut(4096) {
@@ -73,28 +74,28 @@ impl Ground {
     }
 }
 
-/// Why no ground or mask was made.
+/// Error of making a ground or mask.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GroundError {
-    /// The bytes are no such picture.
+    /// The bytes are not such a picture.
     #[error("the {0} cannot be read: {1}")]
     Unreadable(&'static str, String),
-    /// A height map of too few heights.
+    /// A height map with too few distinct heights.
     #[error(
         "the height map has {0}: its ground would be terraces. Save it with 16 bits of grey, or as GeoTIFF of heights"
     )]
     Depth(String),
-    /// A map that does not say where it lies, or lies in degrees.
+    /// A map without a place, or in degrees.
     #[error("the GeoTIFF {0}")]
     Placement(&'static str),
-    /// No height anywhere.
+    /// No cell has a height.
     #[error("the height map has no data in any cell")]
     NoData,
-    /// A map or mesh too small to stand on.
+    /// A map or mesh that is too small.
     #[error("the {0} is too small: it needs at least {1}")]
     TooSmall(&'static str, &'static str),
-    /// Numbers of a mesh or a scale that make no ground.
+    /// Numbers of a mesh or a scale that give no ground.
     #[error("the ground's {0}")]
     Numbers(&'static str),
     /// Too many cells or triangles.

@@ -11,13 +11,13 @@ use super::GroundError;
 pub(super) struct Gray {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Two bytes each, the high one first, if the picture has 16 bits; else one.
+    /// Two bytes for each pixel, the high one first, if the picture has 16 bits; else one.
     pub(super) bytes: Vec<u8>,
     pub(super) is_deep: bool,
 }
 
-/// Reads a picture whose size the budget allows. `is_deep`: 16 bits of grey are wanted, and anything else is refused;
-/// otherwise any picture is turned into 8 bits of grey.
+/// Reads a picture whose size the budget allows. `is_deep` demands 16 bits of grey and refuses anything else;
+/// otherwise any picture is converted to 8 bits of grey.
 pub(super) fn read(bytes: &[u8], is_deep: bool, run: &Run<'_>) -> Result<Gray, GroundError> {
     let what = if is_deep { "height map" } else { "mask" };
     let fault = |e: png::DecodingError| GroundError::Unreadable(what, base::brief(&e.to_string()));
@@ -43,7 +43,7 @@ pub(super) fn read(bytes: &[u8], is_deep: bool, run: &Run<'_>) -> Result<Gray, G
     read.truncate(info.buffer_size());
     let samples = if is_deep { 1 } else { info.color_type.samples() };
     if samples > 1 {
-        // Alpha is no grey: what is transparent is as its colour says.
+        // Alpha is not grey: transparent pixels count with their colour.
         let colors: u8 = if samples >= 3 { 3 } else { 1 };
         let grey = |p: &[u8]| {
             p[..usize::from(colors)].iter().map(|&v| u32::from(v)).sum::<u32>() / u32::from(colors)
@@ -54,7 +54,7 @@ pub(super) fn read(bytes: &[u8], is_deep: bool, run: &Run<'_>) -> Result<Gray, G
 }
 
 impl Gray {
-    /// The level of a pixel.
+    /// Returns the level of a pixel.
     pub(super) fn level(&self, k: usize) -> u16 {
         if self.is_deep {
             u16::from_be_bytes([self.bytes[2 * k], self.bytes[2 * k + 1]])

@@ -1,10 +1,10 @@
-//! Trees of a stand by cells that all have room for: a counting sort.
+//! Trees of a stand by cells, in a counting sort.
 
 use glam::DVec2;
 
 use super::Member;
 
-/// Where the trees of each cell begin; trees lie in order of their cells.
+/// Start of the trees of each cell; trees are in order of their cells.
 pub(super) struct Grid {
     low: DVec2,
     side: f64,
@@ -14,7 +14,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Sorts trees by square cells of at least `side`, and of at least as many trees as cells. Within a cell the order stays.
+    /// Sorts trees by square cells of at least `side`, with at most as many cells as trees. Within a cell the order
+    /// stays.
     pub(super) fn sort(members: &mut Vec<Member>, low: DVec2, size: DVec2, side: f64) -> Self {
         let least = (size.x * size.y / members.len().max(1) as f64).sqrt();
         let side = side.max(least).max(size.max_element() / 60_000.0);
@@ -39,7 +40,7 @@ impl Grid {
         grid
     }
 
-    /// How many trees the cells around one hold, in the mean.
+    /// Returns the mean number of trees in the cells around a tree.
     pub(super) fn neighbours(&self, members: usize) -> f64 {
         let cells = (self.columns * self.rows) as f64;
         members as f64 / cells * cells.min(9.0)
@@ -56,7 +57,8 @@ impl Grid {
         y * self.columns + x
     }
 
-    /// The trees in the cells around a place, as runs of rows: all that are nearer than the side of a cell.
+    /// Returns the trees in the cells around a place, as ranges of rows: all trees nearer than the side of a cell,
+    /// and some others.
     pub(super) fn near(&self, p: DVec2) -> impl Iterator<Item = core::ops::Range<usize>> + '_ {
         let (x, y) = self.split(p);
         let (x0, x1) = (x.saturating_sub(1), (x + 1).min(self.columns - 1));

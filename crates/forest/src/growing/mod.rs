@@ -1,8 +1,8 @@
 //! Stands that grow: `ForestSpec + Ground -> placed trees -> years of competition -> Stand`.
 //!
-//! A tree takes light from those whose crowns lie below its own. What light is left says how fast it grows and how likely it
-//! dies. Crowns in stands cover ground as the diameter to the power of 1.6; so a stand that is full thins itself along
-//! Reineke's line, without a rule that says so.
+//! A tree takes light from trees whose crowns lie below its own. The remaining light determines how fast a tree grows
+//! and how likely it dies. Crowns in stands cover ground as the diameter to the power of 1.6; so a full stand thins
+//! itself along Reineke's line, without an explicit rule.
 //!
 //! | module | owns |
 //! |---|---|
@@ -30,89 +30,89 @@ use step::{freedom, last_look, pushed, sorted, vigour};
 const MOST_SPECIES: usize = 64;
 /// Most corners of outlines, keep-outs and water together.
 const MOST_CORNERS: usize = 1_000_000;
-/// Where a species may stand, it fades out over this share of its range.
+/// A species fades out beyond its range over this share of the range.
 const FADE: f64 = 0.25;
-/// Ranges of no width fade out over this, in their unit.
+/// Least distance over which a species fades out, in the unit of its range.
 const LEAST_FADE: f64 = 1.0;
 
-/// Why no stand grew.
+/// Error of growing a stand.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ForestError {
-    /// A number out of its range.
+    /// A number is out of its range.
     #[error(transparent)]
     Range(#[from] spec::RangeFault),
-    /// No species is named.
+    /// The spec names no species.
     #[error("the stand has no species: name at least one in [[species]], with a share above 0")]
     NoSpecies,
-    /// More species than a stand may have.
+    /// There are more species than a stand may have.
     #[error("the stand has {0} species; at most {MOST_SPECIES} can compete: name the most frequent ones")]
     TooManySpecies(usize),
-    /// A species that is not known.
+    /// A species is unknown.
     #[error("species {number}: {unknown}")]
     Species {
-        /// From 1.
+        /// Number of the species, from 1.
         number: usize,
-        /// The name, and the nearest one.
+        /// The unknown name, and the nearest known one.
         unknown: UnknownSpecies,
     },
-    /// Ranges whose low end is above the high one.
+    /// A range has its low end above the high one.
     #[error("species {number}: {field} goes from {low} to {high}; write the smaller number first")]
     Backwards {
-        /// From 1.
+        /// Number of the species, from 1.
         number: usize,
-        /// Its name.
+        /// Name of the field.
         field: &'static str,
         /// The first number.
         low: f64,
         /// The second.
         high: f64,
     },
-    /// Polygons of less than three corners, or that are not finite.
+    /// A polygon has fewer than three corners, or corners that are not finite.
     #[error("{0} needs {1} corners or more, all of finite numbers")]
     Polygon(&'static str, usize),
-    /// Too many corners.
+    /// There are too many corners.
     #[error(
         "outline, keep_out and water have {0} corners; at most {MOST_CORNERS} can be asked: simplify them"
     )]
     TooManyCorners(usize),
-    /// A mask whose cells would not be square.
+    /// A mask has cells that would not be square.
     #[error(
         "mask {number} is {columns} by {rows} cells, the area {width_m} by {depth_m} m: make both of one shape"
     )]
     MaskSize {
-        /// From 1.
+        /// Number of the mask, from 1.
         number: usize,
         /// Its columns.
         columns: usize,
         /// Its rows.
         rows: usize,
-        /// Of the area.
+        /// Width of the area, metres.
         width_m: f64,
-        /// Of the area.
+        /// Depth of the area, metres.
         depth_m: f64,
     },
-    /// A mask that was named and not given, or the other way round.
+    /// A mask is named but not given, or given but not named.
     #[error("the stand names {named} masks, and {given} were given")]
     Masks {
-        /// In the spec.
+        /// Number of masks that the spec names.
         named: usize,
-        /// With the ground.
+        /// Number of masks given with the ground.
         given: usize,
     },
-    /// A mask for a species that the stand does not have.
+    /// A mask is for a species that the stand does not have.
     #[error("mask {0} is about a species that the stand does not name")]
     MaskSpecies(usize),
-    /// Nothing may stand anywhere.
+    /// No tree may stand anywhere.
     #[error("no tree stands: {0}")]
     Empty(&'static str),
-    /// More trees than numbers.
+    /// There are more trees than numbers.
     #[error("more than four billion trees came up: lower seedlings or years")]
     TooMany,
-    /// The ground or a mask cannot be used.
+    /// The ground or a mask is unusable.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// More than the budget allows.
+    /// The stand exceeds the budget.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
     /// The user asked to stop.
@@ -153,34 +153,34 @@ base::coded!(ForestError {
 pub struct StandYear {
     /// Years since the trees were placed.
     pub year: u32,
-    /// Trees that live.
+    /// Number of living trees.
     pub trees: usize,
-    /// Trees one a hectare of the area.
+    /// Number of living trees per hectare of the area.
     pub trees_ha: f64,
     /// Diameter of the tree of mean basal area, metres.
     pub mean_dbh_m: f64,
-    /// Basal area, square metres a hectare.
+    /// Basal area, square metres per hectare.
     pub basal_area_m2_ha: f64,
-    /// Mean height of the hundred thickest trees a hectare, metres.
+    /// Mean height of the hundred thickest trees per hectare, metres.
     pub top_height_m: f64,
-    /// Trees that died since the moment before.
+    /// Number of trees that died since the moment before.
     pub died: usize,
-    /// Seedlings that came up since the moment before.
+    /// Number of seedlings that came up since the moment before.
     pub came: usize,
 }
 
-/// A stand that has grown, and how.
+/// A grown stand and the course of its growth.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GrownStand {
-    /// The trees that live.
+    /// The living trees.
     pub stand: Stand,
-    /// After each step, with the first moment.
+    /// The first moment, and that after each step.
     pub history: Vec<StandYear>,
     /// Warnings.
     pub report: Report,
 }
 
-/// What a stand grows on.
+/// Site of a stand.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
     /// The ground.
@@ -189,20 +189,20 @@ pub struct Site<'a> {
     pub masks: &'a [Mask],
 }
 
-/// Lets a stand grow.
+/// Grows a stand.
 ///
-/// Guaranteed: the same spec, ground and seed give the same trees on any number of threads; trunks do not touch; no tree
-/// stands in a keep-out, in water, outside of the outline or where the ground has no height; rows ascend and are the numbers
-/// of the trees in order of their birth. Not guaranteed: that a stand is like one certain forest; `docs/forests.md` says how
-/// true it is.
+/// Guaranteed: the same spec, ground and seed give the same trees on any number of threads; trunks do not touch; no
+/// tree stands in a keep-out, in water, outside of the outline or where the ground has no height; rows ascend and are
+/// the numbers of the trees in order of their birth. Not guaranteed: that a stand resembles one certain forest;
+/// `docs/forests.md` measures how realistic stands are.
 ///
 /// Cost: linear in trees times steps, at one density.
 ///
 /// # Errors
 /// [`ForestError`].
 ///
-/// Botkin, Janak and Wallis (1972) for light and death, Richards (1959) for the diameter, Rasche et al. (2012) for the idea that
-/// light says how slender a stem grows.
+/// Botkin, Janak and Wallis (1972) for light and death, Richards (1959) for the diameter, Rasche et al. (2012) for
+/// the idea that light determines how slender a stem grows.
 pub fn grow_stand(
     spec: &ForestSpec,
     ground: &Ground,
@@ -212,7 +212,7 @@ pub fn grow_stand(
     grow_stand_on(spec, &Site { ground, masks: &[] }, seed, run).map(|grown| grown.stand)
 }
 
-/// [`grow_stand`] with masks, and with how the stand grew.
+/// Grows a stand as [`grow_stand`] does, with masks, and also returns the course of its growth.
 ///
 /// # Errors
 /// As [`grow_stand`].
@@ -247,7 +247,7 @@ pub fn grow_stand_on(
     }
     let stand = area.stand(placed.members, seed, run)?;
     if let Some(last) = history.last_mut() {
-        // Of trunks that came to touch in the last step, the thinner one died.
+        // If trunks came to touch in the last step, the thinner tree died.
         last.died += last.trees - stand.trees.len();
         last.trees = stand.trees.len();
     }
@@ -257,19 +257,21 @@ pub fn grow_stand_on(
     Ok(GrownStand { stand, history, report })
 }
 
-/// Keys of what is drawn for a stand.
+/// Key of the random numbers for vigours.
 const VIGOURS: u64 = 3;
+/// Key of the random numbers for years of growth.
 const YEARS: u64 = 4;
+/// Key of the random numbers for rotations.
 const YAWS: u64 = 5;
 
-/// One tree while it grows.
+/// A growing tree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Member {
     x: f64,
     z: f64,
     height: f64,
     dbh: f64,
-    /// Of the zone around its foot from which it takes light, metres.
+    /// Radius of the zone around its foot from which it takes light, metres.
     radius: f64,
     age: f64,
     vigour: f64,
@@ -305,7 +307,7 @@ impl Member {
 /// Trees as they are placed.
 struct Placed {
     members: Vec<Member>,
-    /// Left out because they stood too near.
+    /// Number of trees that were left out because they stood too near.
     dropped: usize,
 }
 
@@ -318,19 +320,20 @@ struct Kind {
     light: f64,
     spread_m: f64,
     seedlings: f64,
-    /// How much light its crown takes, as the exponent of Beer's law.
+    /// Exponent of Beer's law for the light that its crown takes.
     shade: f64,
     slope: Option<[f64; 2]>,
     height_m: Option<[f64; 2]>,
     water_m: Option<[f64; 2]>,
-    /// Rows of the masks that are about it.
+    /// Rows of the masks for it.
     masks: Vec<usize>,
 }
 
-/// The zone from which a tree takes light is this much as wide as its crown in a closed stand (zones of influence, Bella 1971):
-/// light comes from the side, too. Chosen so that basal areas are those of full stands.
+/// Width of the zone from which a tree takes light, as a multiple of its crown width in a closed stand (zones of
+/// influence, Bella 1971): light also comes from the side. Chosen so that basal areas are those of full stands.
 const ZONE: f64 = 1.6;
-/// Exponent of Beer's law under the crown of a species that bears shade, and of one that needs light: the first casts more.
+/// Exponents of Beer's law under the crown of a shade-tolerant species, and of a light-demanding one: the first casts
+/// more shade.
 const SHADES: [f64; 2] = [1.25, 0.95];
 
 impl Kind {
@@ -365,7 +368,7 @@ impl Kind {
         })
     }
 
-    /// Diameter and height of a tree that has just come to breast height.
+    /// Returns diameter and height of a tree that has just reached breast height.
     fn young(&self) -> (f64, f64) {
         if self.allometry.has_trunk() {
             let dbh = step::SEEDLING_DBH_M;
@@ -379,7 +382,7 @@ impl Kind {
         0.5 * ZONE * self.allometry.stand_crown_width_m(tree.dbh, tree.height)
     }
 
-    /// Lets a tree grow as one in full light does in some years.
+    /// Grows a tree by some years in full light.
     fn grow(&self, tree: &mut Member, years: f64, freedom: f64) {
         let thicker = self.allometry.dbh_after_m(tree.dbh, years);
         let top = self.allometry.top_m;
@@ -396,13 +399,13 @@ impl Kind {
     }
 }
 
-/// What the ground is like at a place.
+/// Properties of the ground at a place.
 struct Conditions {
     height_m: f64,
     slope_deg: f64,
 }
 
-/// A stand's place and species, checked.
+/// Place and species of a stand, checked.
 struct Area<'a> {
     spec: &'a ForestSpec,
     site: Site<'a>,
@@ -410,7 +413,7 @@ struct Area<'a> {
     high: DVec2,
     kinds: Vec<Kind>,
     shapes: Shapes,
-    /// Some species asks for the ground.
+    /// Some species has a range of slopes or heights.
     asks_ground: bool,
 }
 
@@ -446,7 +449,7 @@ impl<'a> Area<'a> {
         p.cmpge(self.low).all() && p.cmplt(self.high).all()
     }
 
-    /// What the ground is like; none where there is none.
+    /// Returns the properties of the ground; none if there is no ground.
     fn conditions(&self, p: DVec2) -> Option<Conditions> {
         let height_m = self.site.ground.height_m(p.x, p.y)?;
         if !self.asks_ground {
@@ -456,7 +459,7 @@ impl<'a> Area<'a> {
         Some(Conditions { height_m, slope_deg: ops::acos_clamped(normal.y) * (180.0 / ops::PI) })
     }
 
-    /// How well a place suits a species, 0 to 1.
+    /// Returns how well a place suits a species, 0 to 1.
     fn suits(&self, species: usize, conditions: &Conditions, p: DVec2) -> f64 {
         let kind = &self.kinds[species];
         let mut suits = 1.0;
@@ -475,7 +478,7 @@ impl<'a> Area<'a> {
         size.x * size.y / 10_000.0
     }
 
-    /// Warns of what was left out, and fails if nothing stands.
+    /// Warns of trees that were left out, and fails if there is none.
     fn tell_placed(&self, placed: &Placed, report: &mut Report) -> Result<(), ForestError> {
         if placed.members.is_empty() {
             return Err(ForestError::Empty(
@@ -500,7 +503,7 @@ impl<'a> Area<'a> {
             by_dbh.select_nth_unstable_by(top, |a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
             by_dbh.truncate(top);
         }
-        // The order of a selection is that of the machine's library: sums are over sorted rows.
+        // The order after a selection depends on the standard library: sums are over sorted rows.
         by_dbh.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
         StandYear {
             year,
@@ -514,7 +517,7 @@ impl<'a> Area<'a> {
         }
     }
 
-    /// The trees that live, on their ground, with the crowns that their neighbours leave them.
+    /// Returns the living trees, on their ground, with crowns pushed by their neighbours.
     fn stand(&self, mut members: Vec<Member>, seed: Seed, run: &Run<'_>) -> Result<Stand, ForestError> {
         let grid = sorted(&mut members, self);
         let around = last_look(&members, &grid, self, run)?;
@@ -560,12 +563,12 @@ impl<'a> Area<'a> {
     }
 }
 
-/// Over what a range fades out on each side.
+/// Returns the distance over which a range fades out on each side.
 fn fade(low: f64, high: f64) -> f64 {
     (FADE * (high - low)).max(LEAST_FADE)
 }
 
-/// 1 within a range, 0 well outside of it.
+/// Returns 1 within a range, 0 well outside of it.
 fn suitability([low, high]: [f64; 2], value: f64) -> f64 {
     let beyond = (low - value).max(value - high).max(0.0);
     (1.0 - beyond / fade(low, high)).max(0.0)
@@ -591,7 +594,8 @@ fn check_corners(spec: &ForestSpec) -> Result<(), ForestError> {
     if corners > MOST_CORNERS { Err(ForestError::TooManyCorners(corners)) } else { Ok(()) }
 }
 
-/// Fails unless masks are those that the spec names, of its area's shape and for its species; gives them to the species.
+/// Fails unless the masks are those that the spec names, fit its area and are for its species; assigns them to the
+/// species.
 fn check_masks(spec: &ForestSpec, site: &Site<'_>, kinds: &mut [Kind]) -> Result<(), ForestError> {
     if spec.masks.len() != site.masks.len() {
         return Err(ForestError::Masks { named: spec.masks.len(), given: site.masks.len() });

@@ -1,4 +1,4 @@
-//! Where the first trees stand.
+//! Places the first trees.
 
 use base::{Counted, Draw, Run, Seed, map_until_cancelled, ops};
 use glam::DVec2;
@@ -6,18 +6,19 @@ use glam::DVec2;
 use super::{Area, ForestError, Kind, Member, Placed};
 use crate::spec::PlantingPattern;
 
-/// Side of the cells that have random numbers of their own, metres: a larger area keeps its trees.
+/// Side of the cells with separate random numbers, metres: a larger area keeps its trees.
 const CELL_M: f64 = 10.0;
-/// Groups of one species are this many times as wide as its seeds fly.
+/// Width of the groups of a species, as a multiple of its seed spread.
 const GROUP_PER_SPREAD: f64 = 2.0;
-/// Outside of its groups a species is still this frequent, of what it is amid them.
+/// Least frequency of a species outside of its groups, as a share of that within.
 const LEAST_OUTSIDE: f64 = 0.005;
 
-/// Keys of what is drawn for a cell.
+/// Key of the random numbers for places.
 const PLACES: u64 = 1;
+/// Key of the random numbers for groups.
 const GROUPS: u64 = 2;
 
-/// A number of its own for each cell of the plane, whose coordinates are whole.
+/// Returns a number for each cell of the plane, whose coordinates are whole.
 fn cell_key(cell: DVec2) -> u64 {
     #[expect(
         clippy::cast_possible_truncation,
@@ -28,7 +29,7 @@ fn cell_key(cell: DVec2) -> u64 {
     bits(cell.x) ^ bits(cell.y).rotate_left(32)
 }
 
-/// Smooth noise of one species, 0 to 1, of which hills are `wide` metres apart.
+/// Returns smooth noise of one species, 0 to 1, with hills `wide` metres apart.
 fn noise(seed: Seed, p: DVec2, wide: f64) -> f64 {
     let at = p / wide;
     let (cell, t) = (at.floor(), at - at.floor());
@@ -38,18 +39,18 @@ fn noise(seed: Seed, p: DVec2, wide: f64) -> f64 {
     ops::lerp(row(cell.y), row(cell.y + 1.0), smooth(t.y))
 }
 
-/// What draws the species of a place.
+/// Chooses the species of a place.
 struct Chooser<'a> {
     area: &'a Area<'a>,
     seed: Seed,
     shares: f64,
-    /// One species is in no groups.
+    /// More than one species: they form groups.
     has_groups: bool,
 }
 
 impl Chooser<'_> {
-    /// How likely each species is at a place, beside the others; returns the share of trees that come up at all. Groups say
-    /// which species a tree is, not how many there are.
+    /// Computes the relative frequency of each species at a place; returns the share of trees that come up at all.
+    /// Groups determine the species of a tree, not the number of trees.
     fn weigh(&self, p: DVec2, weights: &mut [f64]) -> f64 {
         let Some(conditions) = self.area.conditions(p) else { return 0.0 };
         let mut share = 0.0;
@@ -61,14 +62,14 @@ impl Chooser<'_> {
         share
     }
 
-    /// Whether a place lies in a group of a species: 1 amid it, next to nothing outside.
+    /// Returns how far a place lies in a group of a species: 1 at its centre, next to nothing outside.
     fn group(&self, species: usize, kind: &Kind, p: DVec2) -> f64 {
         let hill = noise(self.seed.child(GROUPS).child(species as u64), p, GROUP_PER_SPREAD * kind.spread_m);
-        // Steep, so that groups are clear.
+        // The fourth power is steep, so that groups are distinct.
         LEAST_OUTSIDE + hill * hill * hill * hill
     }
 
-    /// A tree at a place, if one comes up there.
+    /// Returns a tree at a place, if one comes up there.
     fn tree(&self, p: DVec2, key: Seed) -> Option<Member> {
         if !self.area.is_within(p) || !self.area.shapes.is_open(p) {
             return None;
@@ -93,7 +94,7 @@ impl Chooser<'_> {
 }
 
 impl Chooser<'_> {
-    /// Trees by chance in a row of cells, of which the first has these whole coordinates.
+    /// Returns random trees in a row of cells, of which the first has these whole coordinates.
     fn row_of_cells(&self, first: DVec2, columns: u32, density: f64) -> Vec<Member> {
         let mut found = Vec::new();
         for column in 0..columns {
@@ -155,7 +156,7 @@ fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestEr
         "lower area_m, or plant wider apart",
     )?;
     let count = 2 * ops::whole(per_row) as usize + 1;
-    // Rows and trees have the numbers that they have from the origin: a larger area keeps its trees.
+    // Rows and trees are numbered from the origin: a larger area keeps its trees.
     let tree = |row: f64, place: f64| {
         let key = chooser.seed.child(cell_key(DVec2::new(place, row)));
         let mut stream = key.stream(Draw::Scatter);
@@ -169,7 +170,7 @@ fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestEr
     Ok(found.into_iter().flatten().collect())
 }
 
-/// Leaves out each tree that stands nearer to one before it than its species wants.
+/// Removes each tree that stands nearer to an earlier one than its species demands.
 fn keep_apart(area: &Area<'_>, proposed: Vec<Member>) -> Result<Vec<Member>, ForestError> {
     let spacing = |m: &Member| area.kinds[usize::from(m.species)].spacing_m;
     let widest = proposed.iter().map(spacing).fold(0.0, f64::max);

@@ -5,10 +5,10 @@ use glam::DVec2;
 
 use crate::spec::Water;
 
-/// Cells along each side of the grid.
+/// Number of cells along each side of the grid.
 const CELLS: usize = 128;
 
-/// Boxes by the cells that they reach into.
+/// Boxes by the cells that they overlap.
 struct Boxes {
     low: DVec2,
     cell: DVec2,
@@ -41,7 +41,7 @@ impl Boxes {
     }
 }
 
-/// What trees keep out of, and how far water is.
+/// Keep-outs of a stand, and the distance to water.
 pub(super) struct Shapes {
     outline: Option<Inside>,
     polygons: Vec<Inside>,
@@ -49,7 +49,7 @@ pub(super) struct Shapes {
     /// Segments with half the width of their river; 0 for shores.
     segments: Vec<(DVec2, DVec2, f64)>,
     segment_boxes: Boxes,
-    /// The farthest distance from water that anything asks for.
+    /// Greatest distance from water that a species needs, metres.
     reach_m: f64,
 }
 
@@ -58,7 +58,7 @@ fn points(of: &[[f64; 2]]) -> Vec<DVec2> {
 }
 
 impl Shapes {
-    /// `low` and `size`: the area.
+    /// Sorts the shapes of a stand into a grid. `low` and `size`: the area.
     pub(super) fn new(
         low: DVec2,
         size: DVec2,
@@ -68,7 +68,7 @@ impl Shapes {
         reach_m: f64,
     ) -> Self {
         let mut shapes = Self {
-            outline: (!outline.is_empty()).then(|| Inside::of(&points(outline))),
+            outline: (!outline.is_empty()).then(|| Inside::new(&points(outline))),
             polygons: Vec::new(),
             polygon_boxes: Boxes::new(low, size),
             segments: Vec::new(),
@@ -97,17 +97,17 @@ impl Shapes {
     fn add_polygon(&mut self, polygon: &[DVec2]) {
         let Some((low, high)) = geom::bounds(polygon) else { return };
         self.polygon_boxes.add(low, high, u32::try_from(self.polygons.len()).unwrap_or(u32::MAX));
-        self.polygons.push(Inside::of(polygon));
+        self.polygons.push(Inside::new(polygon));
     }
 
-    /// Whether a tree may stand there.
+    /// Returns whether a tree may stand there.
     pub(super) fn is_open(&self, p: DVec2) -> bool {
         self.outline.as_ref().is_none_or(|outline| outline.has(p))
             && !self.polygon_boxes.near(p).iter().any(|&k| self.polygons[k as usize].has(p))
             && (self.segments.is_empty() || self.water_m(p) > 0.0)
     }
 
-    /// Distance to the nearest water, as far as anything asks for it; infinite beyond.
+    /// Returns the distance to the nearest water, metres, as far as a species needs it; infinite beyond.
     pub(super) fn water_m(&self, p: DVec2) -> f64 {
         let near = self.segment_boxes.near(p).iter().map(|&k| {
             let (a, b, half) = self.segments[k as usize];

@@ -9,52 +9,56 @@ use super::grid::Grid;
 use super::{Area, ForestError, Kind, Member};
 use crate::BREAST_M;
 
-/// Neighbours that one job looks at, some milliseconds, and the most trees of one.
+/// Number of neighbours that one job examines, which takes some milliseconds.
 const JOB_LOOKS: f64 = 400_000.0;
+/// Most trees of one job.
 const MOST_OF_A_JOB: usize = 4096;
-/// A neighbour that is lower than this share of a tree's height takes no light from it, and one that is higher by as much
-/// takes all that its crown takes.
+/// Relative height difference over which the effect of a neighbour rises from none (it is lower by this share of the
+/// tree's height) to full (it is higher by as much).
 const HEIGHT_BAND: f64 = 0.9;
-/// Of growth in full light, the share below which trees begin to die of shade, and by how much less until all do that will.
+/// Share of growth in full light below which trees begin to die of shade.
 const STRESS_FROM: f64 = 0.13;
+/// Range below that share over which the mortality rises to its maximum.
 const STRESS_OVER: f64 = 0.1;
-/// Yearly chance to die of a tree that does not grow (Botkin et al. 1972: 1 in 100 lives ten such years).
+/// Yearly chance of death of a tree that does not grow (Botkin et al. 1972: 1 in 100 survives ten such years).
 const STARVED: f64 = 0.368;
-/// One tree in a hundred lives as long as its species does: `-ln 0.01`.
+/// One tree in a hundred reaches the life span of its species: `-ln 0.01`.
 const ONE_IN_A_HUNDRED: f64 = 4.605;
-/// Growth of forest trees in full light, of that of trees in gardens and streets, on a good site: top heights at 50 years are
-/// then those of yield tables (pine 20 m, spruce 25 m).
+/// Growth of forest trees in full light as a share of that in gardens and streets, on a good site: top heights at 50
+/// years are then those of yield tables (pine 20 m, spruce 25 m).
 const STAND_RATE: f64 = 0.7;
-/// Light from which on a tree stands free, and below which its stem is as slender as in a closed stand.
+/// Light up to which the stem of a tree is as slender as in a closed stand, and from which the tree stands free.
 const FREE_LIGHT: [f64; 2] = [0.5, 0.95];
-/// Deviation of the logarithm of the vigour of single trees.
+/// Standard deviation of the logarithm of the vigour of single trees.
 const VIGOUR: f64 = 0.18;
-/// The share of its life from which on a tree has seeds, and the least and greatest age, years.
+/// Share of its life from which a tree has seeds.
 const SEED_SHARE: f64 = 0.1;
+/// Least and greatest age at which trees begin to have seeds, years.
 const SEED_AGE: [f64; 2] = [8.0, 40.0];
-/// Diameter of a seedling that has come to breast height, metres.
+/// Diameter of a seedling that has reached breast height, metres.
 pub(super) const SEEDLING_DBH_M: f64 = 0.008;
-/// How far a crown may be pushed, of its radius.
+/// Greatest push of a crown, as a share of its radius.
 const MOST_PUSH: f64 = 0.5;
 
-/// What stands around one tree.
+/// Effect of the neighbours on one tree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Around {
-    /// Light that comes to its crown, 0 to 1.
+    /// Light that reaches its crown, 0 to 1.
     pub(super) light: f64,
-    /// Where its neighbours push its crown: the sum of unit vectors away from them, each by how much it shades.
+    /// Direction in which the neighbours push its crown: the sum of unit vectors away from them, weighted by their
+    /// shade.
     pub(super) push: DVec2,
-    /// How much they shade, added up.
+    /// Sum of these weights.
     pub(super) crowding: f64,
     /// Its trunk touches that of a thicker tree.
     pub(super) is_touched: bool,
 }
 
-/// Looks at the neighbours of a tree.
+/// Examines the neighbours of a tree.
 ///
-/// Light falls off with the crowns above by Beer's law. A crown above counts by its share of the tree's own crown, by its
-/// shade, and by how much higher its tree is. The share of two discs is by the smooth step of how far one reaches into the
-/// other, which is within 3 % of the disc's area of the exact one.
+/// Light decreases with the crowns above by Beer's law. A crown above counts by its share of the tree's own crown, by
+/// its shade, and by how much higher its tree is. The overlap of two discs is approximated by a smooth step of how
+/// far one reaches into the other, which is within 3 % of the disc's area of the exact one.
 pub(super) fn look(members: &[Member], grid: &Grid, kinds: &[Kind], i: usize) -> Around {
     let me = members[i];
     let (mut depth, mut crowding, mut push, mut is_touched) = (0.0, 0.0, DVec2::ZERO, false);
@@ -90,26 +94,27 @@ pub(super) fn look(members: &[Member], grid: &Grid, kinds: &[Kind], i: usize) ->
     Around { light: ops::exp(-depth), push, crowding, is_touched }
 }
 
-/// Growth in a light, of that in full light: between the curves of trees that bear and that need light (Botkin et al. 1972).
+/// Returns growth at a light, as a share of that in full light: between the curves of shade-tolerant and
+/// light-demanding trees (Botkin et al. 1972).
 pub(super) fn response(light: f64, demand: f64) -> f64 {
     let bears = 1.0 - ops::exp(-4.64 * (light - 0.05));
     let needs = 2.24 * (1.0 - ops::exp(-1.136 * (light - 0.08)));
     ops::lerp(bears, needs, demand).clamp(0.0, 1.0)
 }
 
-/// How free a tree stands, 0 to 1.
+/// Returns how free a tree stands, 0 to 1.
 pub(super) fn freedom(light: f64) -> f64 {
     ops::smoothstep(FREE_LIGHT[0], FREE_LIGHT[1], light)
 }
 
-/// How a tree is some years later; none if it died.
+/// Returns the tree some years later; none if it died.
 fn grown(me: Member, around: &Around, kind: &Kind, site: f64, years: f64, seed: Seed) -> Option<Member> {
     let mut stream = seed.stream(Draw::Stand);
     let growth = response(around.light, kind.light);
     let stress = ((STRESS_FROM - growth) / STRESS_OVER).clamp(0.0, 1.0);
     let yearly = (ONE_IN_A_HUNDRED / kind.allometry.life_years + STARVED * stress).min(1.0);
     let lives = ops::exp(years * ops::ln((1.0 - yearly).max(1e-12)));
-    // Two trunks in one place: the thinner one dies.
+    // If two trunks touch, the thinner tree dies.
     if around.is_touched || !stream.chance(lives) {
         return None;
     }
@@ -119,14 +124,14 @@ fn grown(me: Member, around: &Around, kind: &Kind, site: f64, years: f64, seed: 
     Some(me)
 }
 
-/// What one job gives back.
+/// Result of one job.
 #[derive(Default)]
 struct Part {
     lived: Vec<Member>,
     seedlings: Vec<Member>,
 }
 
-/// A stand that looks at itself.
+/// One step of a stand.
 struct Stride<'a> {
     area: &'a Area<'a>,
     members: &'a [Member],
@@ -137,7 +142,7 @@ struct Stride<'a> {
 }
 
 impl Stride<'_> {
-    /// Lets some of the trees grow.
+    /// Grows some of the trees.
     fn part(&self, range: Range<usize>) -> Part {
         let mut part = Part { lived: Vec::with_capacity(range.len()), seedlings: Vec::new() };
         for i in range {
@@ -157,10 +162,10 @@ impl Stride<'_> {
     }
 }
 
-/// Shares all trees among jobs of some milliseconds.
+/// Divides all trees among jobs of some milliseconds.
 ///
 /// # Errors
-/// More looks at neighbours than the budget allows, or the user asked to stop.
+/// More examined neighbours than the budget allows, or the user asked to stop.
 fn in_jobs<T: Send>(
     members: usize,
     grid: &Grid,
@@ -182,7 +187,7 @@ pub(super) struct Turnover {
     pub(super) came: usize,
 }
 
-/// Lets a stand grow for some years. `next_id`: the number of the next tree, if seedlings may come up.
+/// Grows a stand by some years. `next_id`: the number of the next tree, if seedlings may come up.
 pub(super) fn step(
     members: &mut Vec<Member>,
     area: &Area<'_>,
@@ -219,7 +224,7 @@ pub(super) fn sorted(members: &mut Vec<Member>, area: &Area<'_>) -> Grid {
 }
 
 impl Stride<'_> {
-    /// Seedlings of a tree that come to breast height.
+    /// Adds the seedlings of a tree that reach breast height.
     fn sow(&self, parent: &Member, around: &Around, kind: &Kind, seed: Seed, into: &mut Vec<Member>) {
         let area = self.area;
         let seed_age = (SEED_SHARE * kind.allometry.life_years).clamp(SEED_AGE[0], SEED_AGE[1]);
@@ -230,7 +235,7 @@ impl Stride<'_> {
         let wanted = kind.seedlings * self.years * around.light;
         let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
         for _ in 0..count {
-            // Exponential distances in the plane: as far as the species spreads, in the mean.
+            // Distances are exponential, with the seed spread of the species as their mean.
             let far = -kind.spread_m * ops::ln(1.0 - stream.uniform());
             let p = parent.place() + base::turn::direction(stream.range(0.0, ops::TAU)) * far;
             let (luck, normal) = (stream.uniform(), stream.normal());
@@ -245,7 +250,7 @@ impl Stride<'_> {
     }
 }
 
-/// What the last look says of the crowns of a stand that has grown.
+/// Examines the neighbours of each tree in the grown stand, for its crown.
 pub(super) fn last_look(
     members: &[Member],
     grid: &Grid,
@@ -256,8 +261,8 @@ pub(super) fn last_look(
     Ok(in_jobs(members.len(), grid, run, looks)?.into_iter().flatten().collect())
 }
 
-/// How far a crown of a radius is pushed, metres: the farther, the more its neighbours stand on one side and the more they
-/// shade it.
+/// Returns the push of a crown of a radius, metres: the more one-sided its neighbours are and the more they shade it,
+/// the longer.
 pub(super) fn pushed(around: &Around, radius: f64) -> DVec2 {
     if around.crowding <= 0.0 {
         return DVec2::ZERO;
@@ -266,7 +271,7 @@ pub(super) fn pushed(around: &Around, radius: f64) -> DVec2 {
 }
 
 impl Member {
-    /// A seedling; `normal`: a random number for its vigour.
+    /// Returns a seedling; `normal`: a random number for its vigour.
     fn seedling(p: DVec2, species: u16, kind: &Kind, normal: f64) -> Self {
         let mut seedling = Self { x: p.x, z: p.y, species, vigour: vigour(normal), ..Self::default() };
         seedling.age = kind.allometry.age_years(SEEDLING_DBH_M, BREAST_M);

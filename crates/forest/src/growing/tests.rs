@@ -26,7 +26,8 @@ fn named(name: &str, side_m: f64, density_ha: f64, years: u32) -> ForestSpec {
     spec
 }
 
-/// Slope of ln N over ln Dg while a full stand thins itself: from the first decade of closed crowns on, until trees stand free.
+/// Returns the slope of ln N over ln Dg during self-thinning: from the first decade of closed crowns until trees
+/// stand free.
 fn thinning(history: &[StandYear]) -> f64 {
     let full = history.iter().filter(|y| (25..=80).contains(&y.year));
     slope(&full.map(|y| (ops::ln(y.mean_dbh_m), ops::ln(y.trees_ha))).collect::<Vec<_>>())
@@ -86,7 +87,8 @@ fn light_and_growth_have_their_closed_forms() {
         assert!((step::response(1.0, demand) - 1.0).abs() < 0.45, "{}", step::response(1.0, demand));
         assert_eq!(step::response(0.0, demand), 0.0);
     }
-    // A tree of its own stands in full light; one below a much higher one, with a crown all over its own, in what is left.
+    // A lone tree stands in full light; one below a much higher one, whose crown covers its own, gets the remaining
+    // light.
     let area_spec = pine(100.0, 100.0, 0);
     let area = Area::new(&area_spec, &Site { ground: &Ground::Flat, masks: &[] }).unwrap();
     let tree = |x, height, radius, id| Member {
@@ -143,7 +145,7 @@ fn trees_keep_apart_and_out_of_buildings_and_water() {
 
 #[test]
 fn crowns_grow_away_from_neighbours() {
-    // The edge of a stand: those who have all others to the west lean their crowns to the east.
+    // The edge of a stand: trees with all others to the west lean their crowns to the east.
     let grown = grow(&pine(100.0, 2500.0, 40));
     let edge = |is_east: bool| {
         let at = |t: &&Tree| if is_east { t.foot_m.x > 48.5 } else { t.foot_m.x < -48.5 };
@@ -297,7 +299,7 @@ fn a_larger_area_keeps_its_trees() {
 proptest::proptest! {
     #![proptest_config(proptest::prelude::ProptestConfig::with_cases(24))]
 
-    /// Whatever is asked, trees are sound, apart and within; or the stand is refused.
+    /// For any spec, trees are sound, apart and within; or the stand is refused.
     #[test]
     fn every_stand_is_sound(
         side in 1.0..80.0_f64, density in 0.01..20_000.0_f64, years in 0..60_u32, step in 1..20_u32,

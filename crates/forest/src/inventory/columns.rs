@@ -1,8 +1,8 @@
-//! What the columns of an inventory are, by the words and units in their names.
+//! Meaning of the columns of an inventory, by the words and units in their names.
 
 use super::InventoryError;
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Field {
     Easting,
@@ -11,11 +11,11 @@ pub(super) enum Field {
     Latitude,
     /// Height of the foot.
     Elevation,
-    /// The scientific name, which is looked at first.
+    /// The scientific name, which is read first.
     Latin,
     /// The word of a preset, or any name.
     Species,
-    /// A common name, which is looked at last.
+    /// A common name, which is read last.
     Common,
     Height,
     Dbh,
@@ -27,7 +27,7 @@ pub(super) enum Field {
     Planted,
 }
 
-/// Words of columns, in lower case and without what is no letter or digit.
+/// Names of columns, in lower case and reduced to letters and digits.
 const WORDS: &[(Field, &[&str])] = &[
     (
         Field::Easting,
@@ -138,7 +138,7 @@ const WORDS: &[(Field, &[&str])] = &[
     ),
 ];
 
-/// Units of lengths, as names of columns and values end.
+/// Units of lengths, as suffixes of column names and values.
 const UNITS: &[(&str, f64)] = &[
     ("m", 1.0),
     ("metres", 1.0),
@@ -158,19 +158,19 @@ const UNITS: &[(&str, f64)] = &[
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Column {
     pub(super) field: Field,
-    /// Metres of its unit, where its name says the unit.
+    /// Metres of its unit, if its name gives the unit.
     pub(super) metres: Option<f64>,
     /// Its name in the file.
     pub(super) name: String,
 }
 
-/// Metres of a unit.
+/// Returns the metres of a unit.
 pub(super) fn unit_of(word: &str) -> Option<f64> {
     let word = word.trim().to_ascii_lowercase();
     UNITS.iter().find(|(unit, _)| *unit == word).map(|(_, metres)| *metres)
 }
 
-/// A value in metres. Divided by a hundred, 41.5 cm are 0.415 m; times a hundredth, they are not.
+/// Converts a value to metres. It divides, because 41.5 / 100 is exactly 0.415, and 41.5 times 0.01 is not.
 pub(super) fn in_metres(value: f64, metres: f64) -> f64 {
     let per_metre = (1.0 / metres).round();
     if (per_metre * metres - 1.0).abs() < 1e-12 { value / per_metre } else { value * metres }
@@ -184,7 +184,8 @@ fn field_of(word: &str) -> Option<Field> {
     WORDS.iter().find(|(_, words)| words.contains(&word)).map(|(field, _)| *field)
 }
 
-/// What a column is: by its whole name, or by its name before a unit: `height_cm`, `DBH (cm)`, `crown [m]`.
+/// Returns the meaning of a column: by its whole name, or by its name before a unit: `height_cm`, `DBH (cm)`, `crown
+/// [m]`.
 pub(super) fn column_of(name: &str) -> Option<Column> {
     let name = name.trim();
     let column = |field, metres| Some(Column { field, metres, name: base::quoted(name) });
@@ -198,14 +199,14 @@ pub(super) fn column_of(name: &str) -> Option<Column> {
 /// The columns of a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Columns {
-    /// In the order of the file; none for what is of no use.
+    /// In the order of the file; none for columns that are not used.
     pub(super) all: Vec<Option<Column>>,
-    /// Columns that say what another said before, and that one.
+    /// Columns that repeat another one, and that one.
     pub(super) repeated: Vec<(String, String)>,
 }
 
 impl Columns {
-    /// Adds the next column; one that holds what another holds is left out.
+    /// Adds the next column; one that repeats another is left out.
     pub(super) fn push(&mut self, name: &str) {
         let column = column_of(name);
         let first = column.as_ref().and_then(|c| self.all.iter().flatten().find(|o| o.field == c.field));
@@ -222,12 +223,12 @@ impl Columns {
         self.all.iter().flatten().any(|c| c.field == field)
     }
 
-    /// The name of the column of a field.
+    /// Returns the name of the column of a field.
     pub(super) fn name(&self, field: Field) -> String {
         self.all.iter().flatten().find(|c| c.field == field).map(|c| c.name.clone()).unwrap_or_default()
     }
 
-    /// Fails unless trees have places.
+    /// Fails unless there are columns of places.
     pub(super) fn check_places(&self, names: &[String]) -> Result<(), InventoryError> {
         let metres = self.has(Field::Easting) && self.has(Field::Northing);
         let degrees = self.has(Field::Longitude) && self.has(Field::Latitude);

@@ -1,121 +1,121 @@
-//! Why an inventory was not taken.
+//! Errors of reading an inventory.
 
 use base::{Cancelled, OverBudget, Stopped};
 
 use crate::UnknownSpecies;
 
-/// Why no stand was read from an inventory.
+/// Error of reading a stand from an inventory.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InventoryError {
-    /// It is no text.
+    /// The file is not text.
     #[error("the inventory is not UTF-8 text (byte {0} of the file): save it as CSV in UTF-8, or as GeoJSON")]
     NotText(usize),
-    /// It has no rows.
+    /// The file has no rows.
     #[error("the inventory has no trees: no row after its header, or no feature")]
     Empty,
-    /// A row cannot be taken apart.
+    /// A row cannot be split.
     #[error("row {row}: {why}")]
     Row {
-        /// From 1, without the header.
+        /// Number of the row, from 1, without the header.
         row: u32,
-        /// What is wrong.
+        /// The fault.
         why: String,
     },
-    /// It is no sound GeoJSON.
+    /// The file is not valid GeoJSON.
     #[error("the inventory is no sound GeoJSON: {0}")]
     Json(String),
-    /// A geometry that is no point.
+    /// A geometry is not a point.
     #[error(
         "feature {feature} is a {kind}: trees are points; take the other shapes out, or make them points"
     )]
     Geometry {
-        /// From 1.
+        /// Number of the feature, from 1.
         feature: u32,
-        /// The type that it says.
+        /// Its type in the file.
         kind: String,
     },
-    /// No column says where trees stand.
+    /// No column gives the places of the trees.
     #[error("no columns say where trees stand: name them x and y in metres, or lon and lat in degrees. Columns are: {columns}{}",
         if near.is_empty() { String::new() } else { format!("; is `{near}` meant by one?") })]
     NoPlaces {
-        /// All columns.
+        /// Names of all columns.
         columns: String,
-        /// The word that one of them is near to; empty for none.
+        /// The known name that one of them resembles; empty for none.
         near: &'static str,
     },
-    /// No column names species, and none is asked for.
+    /// No column names species, and the request names none either.
     #[error(
         "no column names the species: name one species, latin or name, or say which species all trees are"
     )]
     NoSpecies,
-    /// A value that cannot be meant.
+    /// A value is implausible.
     #[error("row {row}, column `{column}`: {why}")]
     Value {
-        /// From 1, without the header.
+        /// Number of the row, from 1, without the header.
         row: u32,
-        /// Its name in the file.
+        /// Name of the column in the file.
         column: String,
         /// The value, what it must be, and the way out.
         why: String,
     },
-    /// A species that is not known.
+    /// A species is unknown.
     #[error("row {row}, column `{column}`: {unknown}")]
     Species {
-        /// From 1, without the header.
+        /// Number of the row, from 1, without the header.
         row: u32,
-        /// Its name in the file.
+        /// Name of the column in the file.
         column: String,
-        /// The name, and the nearest one.
+        /// The unknown name, and the nearest known one.
         unknown: UnknownSpecies,
     },
-    /// The unit of a column cannot be told.
+    /// The unit of a column is unclear.
     #[error("column `{column}`: {why}; say the unit in its name, such as `{column}_cm` or `{column}_m`")]
     Unit {
-        /// Its name in the file.
+        /// Name of the column in the file.
         column: String,
-        /// What its values are.
+        /// Its values.
         why: String,
     },
-    /// Degrees without a projection.
+    /// Places are in degrees, without a projection.
     #[error(
         "places are in degrees ({0}): say how they become metres, `local` (a plane that touches the earth amid the trees) or `utm`"
     )]
     Degrees(&'static str),
-    /// Degrees in columns of metres.
+    /// Places in columns of metres look like degrees.
     #[error(
         "row {row}: {x}, {y} and the other places look like degrees of longitude and latitude, not metres: say `local` or `utm` for their projection, or `metres` if they are metres"
     )]
     DegreesAsMetres {
-        /// From 1, without the header.
+        /// Number of the row, from 1, without the header.
         row: u32,
         /// Its first coordinate.
         x: f64,
         /// Its second.
         y: f64,
     },
-    /// Trees too far apart for one plane.
+    /// The trees are too far apart for one plane.
     #[error(
         "the trees lie {0:.0} km apart: no plane has true distances over more than {1:.0} km. Split the inventory, or give coordinates of a projection"
     )]
     Span(f64, f64),
-    /// Many trees at one place.
+    /// Too many trees are at one place.
     #[error(
         "{rows} of {all} rows stand within one metre of {x}, {y}: at most {most} can. Are coordinates missing, rounded, or in another unit?"
     )]
     Crowded {
-        /// How many stand there.
+        /// Number of rows there.
         rows: usize,
-        /// How many there are.
+        /// Number of all rows.
         all: usize,
-        /// How many may.
+        /// Most trees that may stand there.
         most: usize,
-        /// In metres, as they were read.
+        /// First coordinate, metres, as read.
         x: f64,
-        /// In metres.
+        /// Second coordinate, metres, as read.
         y: f64,
     },
-    /// Too many rows.
+    /// There are too many rows.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
     /// The user asked to stop.

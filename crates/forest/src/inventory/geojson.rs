@@ -11,10 +11,10 @@ use super::columns::{Columns, Field};
 use super::rows::{Cell, Rows};
 use super::{Crs, InventoryError, InventorySpec};
 
-/// Most names of properties that are looked at.
+/// Most names of properties that are read.
 const MOST_COLUMNS: usize = 1000;
 
-/// What goes from feature to feature.
+/// State that is kept from feature to feature.
 struct State<'a> {
     rows: Rows,
     spec: &'a InventorySpec,
@@ -80,7 +80,7 @@ pub(super) fn read(text: &str, spec: &InventorySpec, run: &Run<'_>) -> Result<Ro
     Ok(rows)
 }
 
-/// Reads the whole; whether it has features.
+/// Reads the whole file; returns whether it has features.
 struct Collection<'s, 'a>(&'s mut State<'a>);
 
 impl<'de> DeserializeSeed<'de> for Collection<'_, '_> {
@@ -141,7 +141,7 @@ impl<'de> Visitor<'de> for Features<'_, '_> {
     }
 }
 
-/// Two numbers of a position.
+/// Returns the two numbers of a position.
 fn position(value: &Value) -> Option<[f64; 2]> {
     let [x, y, ..] = value.as_array()?.as_slice() else { return None };
     Some([x.as_f64()?, y.as_f64()?])
@@ -192,7 +192,7 @@ impl State<'_> {
         self.rows.bad(InventoryError::Row { row, why }, self.spec)
     }
 
-    /// Properties come and go from feature to feature.
+    /// Adds a column for a property, because features differ in theirs.
     fn add_column(&mut self, name: &str) {
         if self.columns_by_name.len() < MOST_COLUMNS && !self.columns_by_name.contains_key(name) {
             self.columns_by_name.insert(name.to_owned(), self.rows.columns.all.len());

@@ -26,19 +26,19 @@ use rows::{Row, Rows};
 
 pub use error::InventoryError;
 
-/// What the coordinates of an inventory are.
+/// Coordinate system of an inventory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crs {
-    /// Metres of any plane, as they are.
+    /// Metres in any plane, unchanged.
     Metres,
-    /// Degrees (WGS 84), onto the plane that touches the earth along the meridian amid the trees.
+    /// Degrees (WGS 84), projected onto the plane that touches the earth along the meridian amid the trees.
     Local,
-    /// Degrees (WGS 84), onto a zone of UTM; none: the zone amid the trees.
+    /// Degrees (WGS 84), projected onto a zone of UTM; none: the zone amid the trees.
     Utm(Option<(u8, bool)>),
 }
 
 impl Crs {
-    /// `metres`, `local`, `utm`, or a zone such as `utm32n` or `utm19s`.
+    /// Parses `metres`, `local`, `utm`, or a zone such as `utm32n` or `utm19s`.
     ///
     /// ```
     /// use forest::Crs;
@@ -60,88 +60,90 @@ impl Crs {
     }
 }
 
-/// What becomes of rows with a value that cannot be read or meant.
+/// Treatment of rows with a value that is unreadable or implausible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BadRows {
-    /// The first one ends the reading.
+    /// The first such row is an error.
     #[default]
     Refuse,
-    /// They are left out, counted, and told of in one warning.
+    /// Such rows are left out, counted, and reported in one warning.
     Skip,
 }
 
 base::words!(BadRows { Refuse = "refuse", Skip = "skip" });
 
-/// How an inventory is read.
+/// Settings for reading an inventory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InventorySpec {
-    /// What coordinates are; none: metres, unless columns are named lon and lat, or the file is GeoJSON.
+    /// Coordinate system; none: metres, unless columns are named lon and lat, or the file is GeoJSON.
     pub crs: Option<Crs>,
-    /// Among what the trees grow; what is missing is filled accordingly.
+    /// Surroundings of the trees; missing figures are filled accordingly.
     pub setting: Setting,
-    /// The species of rows that name none or one that is not known; none: such rows are bad.
+    /// The species of rows that name none or an unknown one; none: such rows are bad.
     pub species: Option<String>,
-    /// What becomes of bad rows.
+    /// Treatment of bad rows.
     pub bad_rows: BadRows,
-    /// The year of the inventory, for columns that say when a tree was planted; none: such columns are left out.
+    /// The year of the inventory, for columns with the year of planting; none: such columns are left out.
     pub year: Option<u32>,
-    /// Turns the trees about their axes.
+    /// Seed for the rotations of the trees about their axes.
     pub seed: Seed,
 }
 
-/// One figure of all trees: how many were given and how many filled.
+/// Counts of one figure over all trees: how many were given and how many filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FigureCount {
-    /// Trees of which it was given.
+    /// Number of trees with a given value.
     pub given: u32,
-    /// Trees of which it was filled.
+    /// Number of trees with a filled value.
     pub filled: u32,
-    /// Of those filled: half the logarithm of high over low, in the mean. 0.3: the interval is from 1/1.35 to 1.35 times.
+    /// For the filled ones, the mean of half the logarithm of high over low. 0.3: the interval is from 1/1.35 to 1.35
+    /// times.
     pub mean_log_interval: f64,
 }
 
-/// What was done with an inventory.
+/// Report on reading an inventory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InventoryReport {
     /// Warnings.
     pub report: Report,
-    /// Rows that were read, with those left out.
+    /// Number of rows that were read, including those left out.
     pub rows: u32,
-    /// Rows that were left out.
+    /// Number of rows that were left out.
     pub skipped: u32,
-    /// Height.
+    /// Counts of the height.
     pub height: FigureCount,
-    /// Diameter.
+    /// Counts of the diameter.
     pub dbh: FigureCount,
-    /// Crown.
+    /// Counts of the crown width.
     pub crown_width: FigureCount,
-    /// Age.
+    /// Counts of the age.
     pub age: FigureCount,
-    /// Trees at the place of an earlier one.
+    /// Number of trees at the place of an earlier one.
     pub duplicates: u32,
-    /// Trees whose trunk touches that of a thicker one; at most 1,000 are counted.
+    /// Number of trees whose trunk touches that of a thicker one; at most 1,000 are counted.
     pub touching: u32,
 }
 
 /// Most trees within a cell of one metre: seedlings of a nursery stand 10 cm apart.
 const MOST_IN_A_METRE: usize = 100;
-/// Trees whose trunks touch are counted up to here.
+/// Largest count of trees whose trunks touch.
 const MOST_TOUCHING: u32 = 1_000;
-/// Rows that name the same species by its genus are told of one by one up to this number of names.
+/// Most names of species, each known only by its genus, with a warning of their own.
 const NAMES_TOLD: usize = 5;
-/// The farthest that trees may lie apart on one plane, kilometres: there distances are wrong by 1 in 160.
+/// Greatest distance between trees on one plane, kilometres: there distances are wrong by 1 in 160.
 const MOST_SPAN_KM: f64 = 1_000.0;
-/// From here on a report says how wrong distances are, kilometres.
+/// Distance between trees from which the report gives the error of distances, kilometres.
 const TOLD_SPAN_KM: f64 = 100.0;
-/// Coordinates beyond this are moved to an origin of their own, metres: floats of renderers keep a millimetre up to here.
+/// Coordinates beyond this get a new origin, metres: single precision, as renderers use, keeps a millimetre up to
+/// here.
 const FAR_M: f64 = 10_000.0;
 
-/// Reads an inventory of trees: CSV (comma, semicolon or tab; quoted fields; decimal commas where a semicolon or tab
-/// separates), or GeoJSON of points. Which columns are known is in `docs/forests.md`.
+/// Reads an inventory of trees: CSV (comma, semicolon or tab; quoted fields; decimal commas if a semicolon or tab
+/// separates), or GeoJSON of points. `docs/forests.md` lists the known columns.
 ///
-/// Guaranteed: one tree for each row that is not left out, in order; figures that are given stay to the bit (in metres);
-/// figures that are missing are those of [`Allometry::fill`]. +X is east and +Z south, the origin is
-/// [`Stand::origin_m`]. Not guaranteed: that given figures fit together; what is doubtful is told.
+/// Guaranteed: one tree for each row that is not left out, in order; given figures keep their bits (in metres);
+/// missing figures are those of [`Allometry::fill`]. +X is east and +Z south, the origin is [`Stand::origin_m`]. Not
+/// guaranteed: that given figures fit together; doubtful ones are reported.
 ///
 /// Cost: n log n in the rows.
 ///
@@ -185,7 +187,7 @@ pub fn read_inventory(
     Ok((stand, report))
 }
 
-/// Turns degrees into metres, and refuses degrees that are taken for metres.
+/// Projects degrees to metres, and refuses degrees in columns of metres.
 fn project(rows: &mut Rows, spec: &InventorySpec) -> Result<(), InventoryError> {
     let crs = match (spec.crs, rows.are_degrees) {
         (Some(Crs::Metres), true) if rows.columns.has(Field::Longitude) => {
@@ -232,12 +234,12 @@ fn project(rows: &mut Rows, spec: &InventorySpec) -> Result<(), InventoryError> 
     Ok(())
 }
 
-/// Fails where places that should be metres lie in the range of degrees and are given more finely than metres are measured,
-/// or closer than trees stand.
+/// Fails if places that should be metres lie in the range of degrees and either have more decimals than anybody
+/// measures in metres, or are closer than trees stand.
 fn refuse_degrees(rows: &[Row]) -> Result<(), InventoryError> {
-    /// Metres with more decimals than four are finer than anybody measures.
+    /// Metres with more than four decimals are finer than anybody measures.
     const FINE: f64 = 1e4;
-    /// Mean spacing of trees, metres, below which no stand is.
+    /// Least mean spacing of trees, metres.
     const CLOSE_M: f64 = 0.05;
     let is_in_range = rows.iter().all(|r| r.x.abs() <= 180.0 && r.y.abs() <= 90.0);
     if !is_in_range || rows.len() < 2 {
@@ -252,7 +254,7 @@ fn refuse_degrees(rows: &[Row]) -> Result<(), InventoryError> {
     }
     let extent = (high - low).max_element();
     let spacing = extent / (rows.len() as f64).sqrt();
-    // All at one place is another fault.
+    // All trees at one place is another fault.
     if 2 * fine > rows.len() || (extent > 0.0 && spacing < CLOSE_M) {
         let Row { number, x, y, .. } = rows[0];
         return Err(InventoryError::DegreesAsMetres { row: number, x, y });
@@ -260,7 +262,7 @@ fn refuse_degrees(rows: &[Row]) -> Result<(), InventoryError> {
     Ok(())
 }
 
-/// Fails where more trees stand within a metre than can.
+/// Fails if more trees stand within a metre than can.
 fn check_crowds(rows: &Rows, places: &[DVec2]) -> Result<(), InventoryError> {
     let cells = SortedCells::new(places.iter().copied(), 1.0);
     let most = cells.cells().max_by_key(|c| c.len()).unwrap_or_default();
@@ -269,7 +271,7 @@ fn check_crowds(rows: &Rows, places: &[DVec2]) -> Result<(), InventoryError> {
     Err(InventoryError::Crowded { rows: most.len(), all: rows.rows.len(), most: MOST_IN_A_METRE, x, y })
 }
 
-/// The trees, with what is missing.
+/// Returns the trees, with missing figures filled.
 fn fill(
     rows: &mut Rows,
     spec: &InventorySpec,
@@ -338,16 +340,16 @@ fn fill(
     Ok(stand)
 }
 
-/// Rows between two looks at whether the result is still wanted.
+/// Number of rows between two checks for cancellation.
 const CHECK_EVERY: usize = 4096;
 
-/// Counts trees at one place, and trunks that touch.
+/// Counts trees at the same place, and trunks that touch.
 fn find_neighbours(stand: &Stand, report: &mut InventoryReport) {
     let place = |k: usize| DVec2::new(stand.trees[k].foot_m.x, stand.trees[k].foot_m.z);
     let cells = SortedCells::new((0..stand.trees.len()).map(place), 1.0);
     for (k, tree) in stand.trees.iter().enumerate() {
         let (p, mut is_duplicate) = (place(k), false);
-        // Of a pair, the thicker one looks, and of two equal ones the later.
+        // In each pair the thicker one searches; of two equal ones, the later.
         let ring = ops::whole(tree.dbh_m.ceil()).max(1);
         for j in cells.near(p, i64::from(ring)).map(|j| j as usize).filter(|&j| j != k) {
             let (other, gap) = (&stand.trees[j], place(j).distance(p));

@@ -1,4 +1,4 @@
-//! One row of an inventory: cells -> numbers, species, and what cannot be meant.
+//! One row of an inventory: cells -> numbers and species; implausible values are refused.
 
 use std::collections::BTreeMap;
 
@@ -10,34 +10,36 @@ use super::{
 };
 use crate::{Allometry, Measured};
 
-/// The highest tree is a coast redwood of 116 m, the thickest a Montezuma cypress of 11.6 m across and 36 m around, the widest
-/// crowns are banyans of 200 m, and the oldest bristlecone pines have 4,900 years.
+/// Greatest height, metres: the highest tree is a coast redwood of 116 m.
 const MOST_HEIGHT_M: f64 = 130.0;
+/// Greatest diameter, metres: the thickest tree is a Montezuma cypress of 11.6 m across and 36 m around.
 const MOST_DBH_M: f64 = 15.0;
+/// Greatest width of a crown, metres: the widest crowns are banyans of 200 m.
 const MOST_CROWN_M: f64 = 250.0;
+/// Greatest age, years: the oldest bristlecone pines have 4,900 years.
 const MOST_AGE: f64 = 6_000.0;
-/// No place of a projection of the earth is farther from its origin, metres.
+/// Greatest distance of a place from the origin of its projection, metres.
 const MOST_PLACE_M: f64 = 1e8;
-/// Height over diameter: stout old trunks and poles of a thicket are between.
+/// Plausible ratios of height to diameter, from stout old trunks to poles of a thicket.
 const SLENDER: core::ops::Range<f64> = 4.0..250.0;
-/// Median diameters from here on, without a unit, are centimetres; below, with none as large, metres.
+/// Median diameter from which values without a unit are centimetres; below, if none is as large, they are metres.
 const CENTIMETRES_FROM: f64 = 3.0;
-/// Words for nothing.
+/// Words for a missing value.
 const NOTHING: &[&str] = &["", "-", "--", "na", "n/a", "nan", "null", "none", "unknown", "nil", "?"];
 
-/// A cell as its format gives it.
+/// A cell of the file.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Cell<'a> {
     Text(&'a str),
     Number(f64),
 }
 
-/// One tree as it was written; NaN for what is not there.
+/// One tree as in the file; NaN for missing figures.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) number: u32,
     pub(super) species: u16,
-    /// The diameter, or girth, is in a unit that nobody said.
+    /// The diameter, or girth, has no unit.
     is_bare: bool,
     pub(super) x: f64,
     pub(super) y: f64,
@@ -60,7 +62,7 @@ impl Row {
     }
 }
 
-/// All rows, and what is to be told of them.
+/// All rows, and the counts for the report.
 #[derive(Debug, Default)]
 pub(super) struct Rows {
     pub(super) columns: Columns,
@@ -68,17 +70,17 @@ pub(super) struct Rows {
     pub(super) species: Vec<&'static Allometry>,
     /// Species by the names in the file.
     names: BTreeMap<String, Option<u16>>,
-    /// Names that stand for another species of their genus, with it and the number of rows.
+    /// Names that were replaced by another species of their genus, with it and the number of rows.
     by_genus: BTreeMap<String, (u16, u32)>,
-    /// Rows that name no known species and are of the one asked for, and the first of those names.
+    /// Number of rows without a known species, which get the requested one, and the first of their names.
     replaced: (u32, String),
-    /// Rows that were seen, from 1.
+    /// Number of rows so far.
     pub(super) seen: u32,
     pub(super) skipped: u32,
     pub(super) first_fault: Option<InventoryError>,
     /// Coordinates are degrees.
     pub(super) are_degrees: bool,
-    /// Figures of 0, which inventories write for what they do not know.
+    /// Number of figures of 0, which inventories write for unknown values.
     zeros: u32,
     pub(super) sizeless: usize,
     pub(super) span_km: f64,
@@ -86,7 +88,7 @@ pub(super) struct Rows {
     has_decimal_commas: bool,
 }
 
-/// A value that cannot be meant, without its row and column.
+/// Reason why a value is implausible, without its row and column.
 type Why = String;
 
 impl Rows {
@@ -94,7 +96,7 @@ impl Rows {
         Self { columns, are_degrees, has_decimal_commas, ..Self::default() }
     }
 
-    /// Takes in one tree: the cells of its columns.
+    /// Adds one tree, from the cells of its columns.
     pub(super) fn take<'a>(
         &mut self,
         cells: &dyn Fn(usize) -> Option<Cell<'a>>,
@@ -116,7 +118,7 @@ impl Rows {
         }
     }
 
-    /// A row that cannot be taken in: left out if that is asked for.
+    /// Handles a bad row: leaves it out if the settings say so, else fails.
     pub(super) fn bad(&mut self, fault: InventoryError, spec: &InventorySpec) -> Result<(), InventoryError> {
         if spec.bad_rows == BadRows::Refuse {
             return Err(fault);
@@ -184,7 +186,7 @@ impl Rows {
         Ok(row)
     }
 
-    /// The species of a row, by the first of its names that is known.
+    /// Returns the species of a row, by the first of its names that is known.
     fn species_of(
         &mut self,
         names: [Option<(usize, &str)>; 3],
@@ -230,7 +232,7 @@ impl Rows {
         Ok(self.species_row(found.allometry))
     }
 
-    /// The fault of a row without a species.
+    /// Returns the fault of a row without a species.
     fn nameless(&self) -> InventoryError {
         let fields = [Field::Latin, Field::Species, Field::Common];
         match fields.into_iter().find(|f| self.columns.has(*f)) {
@@ -252,7 +254,7 @@ impl Rows {
         u16::try_from(row).unwrap_or(u16::MAX)
     }
 
-    /// Finds the unit of diameters whose column does not say it, and checks them.
+    /// Finds the unit of diameters whose column does not give it, and checks them.
     pub(super) fn settle_units(&mut self) -> Result<(), InventoryError> {
         let mut bare: Vec<f64> =
             self.rows.iter().filter(|r| r.is_bare && !r.dbh.is_nan()).map(|r| r.dbh).collect();
@@ -282,7 +284,7 @@ impl Rows {
         fault.map_or(Ok(()), Err)
     }
 
-    /// Fails where a place is no longitude and latitude.
+    /// Fails if a place is not a longitude and latitude.
     pub(super) fn check_degrees(&self) -> Result<(), InventoryError> {
         let bad = self.rows.iter().find(|r| r.x.abs() > 180.0 || r.y.abs() > 90.0);
         let Some(row) = bad else { return Ok(()) };
@@ -299,7 +301,7 @@ impl Rows {
         Err(InventoryError::Value { row: row.number, column: names.join("`, `"), why })
     }
 
-    /// Tells what was done.
+    /// Adds the counts and warnings to the report.
     pub(super) fn tell(&self, to: &mut InventoryReport, spec: &InventorySpec) {
         for note in &self.notes {
             to.report.warn("inventory-assumed", note.clone());
@@ -366,7 +368,7 @@ impl Rows {
         self.tell_doubtful(to);
     }
 
-    /// Heights and diameters that do not go together.
+    /// Warns of heights and diameters that do not fit together.
     fn tell_doubtful(&self, to: &mut InventoryReport) {
         let doubtful =
             |r: &&Row| !(r.height.is_nan() || r.dbh.is_nan() || SLENDER.contains(&(r.height / r.dbh)));
@@ -382,7 +384,7 @@ fn is_nothing(text: &str) -> bool {
     NOTHING.iter().any(|n| text.trim().eq_ignore_ascii_case(n))
 }
 
-/// A number and, where it is written behind it, the metres of its unit; none for an empty cell.
+/// Parses a number and, if a unit follows it, the metres of its unit; none for an empty cell.
 fn number(cell: Cell<'_>, has_decimal_commas: bool) -> Result<Option<(f64, Option<f64>)>, Why> {
     let text = match cell {
         Cell::Number(value) => return finite(value).map(|v| Some((v, None))),
@@ -414,7 +416,7 @@ fn finite(value: f64) -> Result<f64, Why> {
     if value.is_finite() { Ok(value) } else { Err(format!("`{value}` is no number that can be measured")) }
 }
 
-/// Puts a value into its row; 1 if it is a 0 that stands for nothing.
+/// Stores a value in its row; returns 1 if it is a 0 that stands for an unknown value.
 fn put(
     row: &mut Row,
     field: Field,
@@ -462,7 +464,7 @@ fn put(
         Field::Height => row.height = at_most(MOST_HEIGHT_M, "height of a tree", &["cm", "ft"])?,
         Field::Dbh if metres.is_none() => row.dbh = value,
         Field::Dbh => row.dbh = at_most(MOST_DBH_M, "diameter of a trunk", &["cm", "mm"])?,
-        // A diameter that is measured counts more than one that follows from a girth.
+        // A measured diameter takes precedence over one from a girth.
         Field::Girth if !row.dbh.is_nan() => {}
         Field::Girth if metres.is_none() => row.dbh = value,
         Field::Girth => {

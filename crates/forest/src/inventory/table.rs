@@ -6,17 +6,17 @@ use super::columns::{Columns, Field};
 use super::rows::{Cell, Rows};
 use super::{InventoryError, InventorySpec};
 
-/// The characters that may separate columns.
+/// Characters that may separate columns.
 const DELIMITERS: [u8; 4] = [b',', b';', b'\t', b'|'];
 /// Most columns of a table.
 const MOST_COLUMNS: usize = 1000;
 
-/// The delimiter of which the header has most, outside of quotes.
+/// Returns the most frequent delimiter of the header, outside of quotes.
 fn delimiter(text: &str) -> u8 {
     let header = text.lines().find(|l| !l.trim().is_empty()).unwrap_or_default();
     let unquoted: Vec<&str> = header.split('"').step_by(2).collect();
     let count = |d: &u8| unquoted.iter().map(|part| part.bytes().filter(|b| b == d).count()).sum::<usize>();
-    // The first of those that are as frequent.
+    // The first of equally frequent ones.
     DELIMITERS.into_iter().rev().max_by_key(count).unwrap_or(b',')
 }
 
@@ -64,7 +64,7 @@ pub(super) fn read(text: &str, spec: &InventorySpec, run: &Run<'_>) -> Result<Ro
     }
 }
 
-/// Where a table has places in metres and in degrees, metres are taken.
+/// If a table has places in metres and in degrees, drops those in degrees.
 fn drop_other_places(columns: &mut Columns, are_degrees: bool) {
     let other =
         if are_degrees { [Field::Easting, Field::Northing] } else { [Field::Longitude, Field::Latitude] };

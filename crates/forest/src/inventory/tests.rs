@@ -110,7 +110,8 @@ fn degrees_become_metres_by_a_stated_projection() {
         let spec = InventorySpec { crs: Crs::from_word(crs), ..InventorySpec::default() };
         let (stand, _) = read_inventory(text.as_bytes(), &spec, &Run::plain()).expect("sound");
         let [a, b, c] = [0, 1, 2].map(|k| stand.trees[k].foot_m);
-        // A thousandth of a degree: 74.6 m of longitude at 48 degrees, 111.2 m of latitude; UTM is shorter by 1 in 2,500.
+        // A thousandth of a degree: 74.6 m of longitude at 48 degrees, 111.2 m of latitude; UTM is shorter by 1 in
+        // 2,500.
         assert!(((b - a).length() - 74.62).abs() < 0.1, "{crs}: {}", (b - a).length());
         assert!(((c - a).length() - 111.19).abs() < 0.1, "{crs}: {}", (c - a).length());
         assert!(c.z < a.z && b.x > a.x, "north is -Z, east is +X");
@@ -203,7 +204,7 @@ proptest! {
             text += &format!("{x},{y},{species},{},{},{},{}\n", number(*h), number(*d), number(*c), number(*a));
         }
         let setting = if is_stand { Setting::Stand } else { Setting::Free };
-        // Three rows in a hundred metres are no degrees, but random numbers are as fine.
+        // Three rows in a hundred metres are not degrees, but random numbers have as many decimals.
         let spec = InventorySpec { setting, crs: Some(Crs::Metres), ..InventorySpec::default() };
         let (stand, report) = read_inventory(text.as_bytes(), &spec, &Run::plain()).unwrap();
         prop_assert_eq!(stand.trees.len(), rows.len());
@@ -215,7 +216,7 @@ proptest! {
         }
     }
 
-    /// No bytes make it panic.
+    /// No bytes cause a panic.
     #[test]
     fn any_text_is_taken_or_refused(text in "[xylonatspecidbh,;\t\"0-9.\\-\n{}\\[\\]: ]{0,200}") {
         let _ = read(&text);

@@ -32,7 +32,7 @@ fn a_street_as_a_town_lists_it() {
     assert_eq!((stand.trees.len(), report.rows, report.skipped), (32, 32, 0));
     assert_eq!(stand.species, ["plane-tree", "lime"]);
     assert_eq!((report.height.given, report.height.filled, report.dbh.given), (29, 3, 32));
-    // Coordinates of Gauss and Krueger are far from the origin: the stand is near its own.
+    // Coordinates of Gauss and Krueger are far from the origin: the stand gets one nearby.
     assert!(stand.trees.iter().all(|t| t.foot_m.length() < 140.0), "{}", stand.origin_m);
     assert_eq!(stand.origin_m.x, 4_471_200.0);
     let text = String::from_utf8(file("street.csv")).unwrap();

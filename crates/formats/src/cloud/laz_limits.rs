@@ -1,36 +1,37 @@
-//! What a compressed scan claims, against what its bytes can hold: before any memory is taken for it.
+//! Checks what a compressed scan claims against what its bytes can hold, before any memory is taken for it.
 
 use super::broken_las as fail;
 use crate::error::CloudError;
 use laz::{LazItem, LazItemType, LazVlr};
 
-/// How much a compressed scan may claim.
+/// Limits of what a compressed scan may claim.
 struct LazLimits {
-    /// Points of a byte. Scans take a byte or more for each point; a hundred thousand points at one place come to 140 a byte.
+    /// Most points for one byte. Scans take a byte or more for each point; a hundred thousand points at one place
+    /// come to 140 a byte.
     points_a_byte: usize,
-    /// Parts of a record, such as place, colour and time: no point format has more than 5.
+    /// Most parts of a record, such as place, colour and time: no point format has more than 5.
     items: usize,
 }
 
 const LIMITS: LazLimits = LazLimits { points_a_byte: 2_000, items: 8 };
 
-/// Bytes before the points of chunks, which say where the table of chunks is.
+/// Bytes before the first chunk of points; they hold the position of the chunk table.
 const TABLE_PLACE: usize = 8;
 
 /// A compressed scan before it is unpacked.
 pub(super) struct Packed<'a> {
     pub(super) bytes: &'a [u8],
-    /// Where the compressed points begin.
+    /// Byte at which the compressed points begin.
     pub(super) data_at: usize,
     /// Bytes of a point.
     pub(super) record: usize,
-    /// Points that are claimed.
+    /// Number of points that the file claims.
     pub(super) count: usize,
-    /// The record that says how they are packed.
+    /// The record that describes the compression.
     pub(super) how: &'a [u8],
 }
 
-/// How chunks are packed, as the record of `LASzip` numbers it.
+/// Arrangement of the compressed points, as the record of `LASzip` numbers it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Chunks {
     /// All points one after the other.
@@ -42,21 +43,15 @@ enum Chunks {
 }
 
 impl Packed<'_> {
-    /// Where the last chunk ends that is whole: nothing behind it is to be unpacked.
+    /// Returns the end of the last whole chunk: nothing behind it is to be unpacked.
     ///
-    /// Guaranteed: what is unpacked of the bytes before takes memory in proportion to them, and does not panic.
+    /// Guaranteed: unpacking the bytes before that end takes memory in proportion to them, and does not panic.
     pub(super) fn check(&self, vlr: &LazVlr) -> Result<usize, CloudError> {
+        let chunks = self.check_kind(vlr)?;
         let there = self.bytes.len() - self.data_at;
         if self.count / LIMITS.points_a_byte > there {
             return Err(self.broken(format!("{} points are announced in {there} bytes", self.count)));
         }
-        let chunks = match self.how {
-            [1, 0, ..] => Chunks::None,
-            [2, 0, ..] => Chunks::Points,
-            [3, 0, ..] => Chunks::Layers,
-            _ => return Err(self.broken("it is packed in an unknown way".into())),
-        };
-        self.check_items(vlr.items(), chunks)?;
         if chunks == Chunks::None {
             return Ok(self.bytes.len());
         }
@@ -67,11 +62,33 @@ impl Packed<'_> {
         }
     }
 
+    /// An error unless a cell of an octree is a whole chunk of layers that may hold so many points.
+    pub(super) fn check_cell(&self, vlr: &LazVlr, points: usize) -> Result<(), CloudError> {
+        let is_layered = self.check_kind(vlr)? == Chunks::Layers;
+        let is_whole = self.chunk_length(self.data_at, vlr.items()) == Some(self.bytes.len() - self.data_at);
+        if is_layered && is_whole && points / LIMITS.points_a_byte <= self.bytes.len() - self.data_at {
+            return Ok(());
+        }
+        Err(self.broken("a cell of its octree (COPC) does not hold what it announces".into()))
+    }
+
+    /// How it is packed, if its records are sound.
+    fn check_kind(&self, vlr: &LazVlr) -> Result<Chunks, CloudError> {
+        let chunks = match self.how {
+            [1, 0, ..] => Chunks::None,
+            [2, 0, ..] => Chunks::Points,
+            [3, 0, ..] => Chunks::Layers,
+            _ => return Err(self.broken("it is packed in an unknown way".into())),
+        };
+        self.check_items(vlr.items(), chunks)?;
+        Ok(chunks)
+    }
+
     fn broken(&self, what: String) -> CloudError {
         fail(self.data_at, what)
     }
 
-    /// The parts of a record are those that the unpacker fills.
+    /// Checks that the parts of a record are those that the unpacker fills.
     fn check_items(&self, items: &[LazItem], chunks: Chunks) -> Result<(), CloudError> {
         let layered = |item: &LazItem| item.version() >= 3;
         let sound = |item: &LazItem| {
@@ -87,20 +104,21 @@ impl Packed<'_> {
         Err(self.broken(format!("its records have {} bytes and {size} packed ones", self.record)))
     }
 
-    /// The table of chunks has as many as there can be and, where it says how many points each holds, enough of them.
+    /// Checks that the chunk table lists no more chunks than there is room for and, if it gives the number of points
+    /// of each, that they add up to the number claimed.
     fn check_table(&self, vlr: &LazVlr) -> Result<(), CloudError> {
         let long = |at: usize| {
             let raw = self.bytes.get(at..at.checked_add(8)?)?;
             i64::from_le_bytes(raw.try_into().ok()?).try_into().ok()
         };
-        // Where a program could not go back to write it, its place stands at the end.
+        // A program that could not go back to write the table's position puts it at the end of the file.
         let place = long(self.data_at).filter(|&at: &usize| at > self.data_at);
         let place = place.or_else(|| long(self.bytes.len().checked_sub(8)?).filter(|&at| at > self.data_at));
         let number = place.and_then(|at| {
             let raw = self.bytes.get(at.checked_add(4)?..at.checked_add(8)?)?;
             Some(u32::from_le_bytes(raw.try_into().ok()?) as usize)
         });
-        // Each begins with a whole record.
+        // Each chunk begins with a whole record.
         let most = (self.bytes.len() - self.data_at) / self.record + 1;
         if let Some(number) = number.filter(|&n| n > most) {
             return Err(self.broken(format!("{number} chunks are announced where {most} have room")));
@@ -119,25 +137,29 @@ impl Packed<'_> {
         Ok(())
     }
 
-    /// Goes from chunk to chunk by the sizes of their layers.
+    /// Returns the end of the last whole chunk, found by the sizes of the layers of each.
     fn whole_layers(&self, items: &[LazItem]) -> usize {
-        let layers: usize = items.iter().map(|item| layers_of(item.item_type())).sum();
-        let sizes_at = self.record + 4;
-        let head = sizes_at + 4 * layers;
         let mut at = (self.data_at + TABLE_PLACE).min(self.bytes.len());
-        while let Some(chunk) = self.bytes[at..].get(..head) {
-            let sizes = chunk[sizes_at..].chunks_exact(4);
-            let sum: u64 = sizes.map(|s| u64::from(u32::from_le_bytes([s[0], s[1], s[2], s[3]]))).sum();
-            match usize::try_from(sum).ok().and_then(|sum| sum.checked_add(head)) {
-                Some(length) if length <= self.bytes.len() - at => at += length,
-                _ => break,
-            }
+        while let Some(length) = self.chunk_length(at, items) {
+            at += length;
         }
         at
     }
+
+    /// Bytes of the chunk of layers that begins there, if it is whole.
+    fn chunk_length(&self, at: usize, items: &[LazItem]) -> Option<usize> {
+        let layers: usize = items.iter().map(|item| layers_of(item.item_type())).sum();
+        let sizes_at = self.record + 4;
+        let head = sizes_at + 4 * layers;
+        let chunk = self.bytes[at..].get(..head)?;
+        let sizes = chunk[sizes_at..].chunks_exact(4);
+        let sum: u64 = sizes.map(|s| u64::from(u32::from_le_bytes([s[0], s[1], s[2], s[3]]))).sum();
+        let length = usize::try_from(sum).ok()?.checked_add(head)?;
+        (length <= self.bytes.len() - at).then_some(length)
+    }
 }
 
-/// Bytes that a part of a record has, whatever the file says.
+/// Returns the bytes that a part of a record has, whatever the file says.
 const fn size_of(kind: LazItemType) -> u16 {
     match kind {
         LazItemType::Byte(size) | LazItemType::Byte14(size) => size,
@@ -149,7 +171,7 @@ const fn size_of(kind: LazItemType) -> u16 {
     }
 }
 
-/// Layers in which a part of a record lies.
+/// Returns the number of layers that hold a part of a record.
 fn layers_of(kind: LazItemType) -> usize {
     match kind {
         LazItemType::Point14 => 9,

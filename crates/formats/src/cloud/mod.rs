@@ -1,24 +1,38 @@
-//! bytes -> [`mesh::PointCloud`]: scans as PLY, XYZ or TXT, PCD, LAS and OBJ.
+//! bytes -> [`mesh::PointCloud`]: scans as PLY, XYZ or TXT, PCD, LAS, OBJ and E57.
+//!
+//! Each reader gives points, colours and classes to a `Sink`; names of columns are understood in one place, `columns`. What a file
+//! says of itself, and what is odd in its numbers, is in `CloudFacts`.
 
+mod columns;
+#[cfg(feature = "laz")]
+mod copc;
+#[cfg(feature = "e57")]
+mod e57;
+mod facts;
 mod las;
+mod las_parts;
+mod las_system;
 #[cfg(feature = "laz")]
 mod laz_limits;
 mod pcd;
 mod ply;
+mod sink;
+mod strays;
 mod text;
 
 use std::io::{Read, Write};
 
 use base::Report;
-use glam::DVec3;
 use mesh::PointCloud;
 
 use crate::error::{CloudError, FileFault, Place, WriteError};
 use crate::foreign::Foreign;
 use crate::{CloudFormat, ExportSpec};
+pub use facts::{ClassCount, CloudFacts};
+use sink::Sink;
 
 impl CloudFormat {
-    /// The format of a file that starts with these bytes (4,096 of them are plenty), if they can be a scan.
+    /// Returns the format of a file that starts with these bytes (4,096 of them are plenty), if they can be a scan.
     ///
     /// ```
     /// use formats::CloudFormat;
@@ -28,6 +42,9 @@ impl CloudFormat {
     pub fn sniff(start: &[u8]) -> Option<Self> {
         if start.starts_with(b"LASF") {
             return Some(Self::Las);
+        }
+        if start.starts_with(b"ASTM-E57") {
+            return Some(Self::E57);
         }
         if start.starts_with(b"ply\n") || start.starts_with(b"ply\r") {
             return Some(Self::Ply);
@@ -49,16 +66,16 @@ pub const MAX_CLOUD_BYTES: u64 = 1 << 30;
 /// Most points of a scan: 32 million.
 pub(crate) const MAX_POINTS: usize = 32 << 20;
 
-/// Farthest that a point may lie from the origin, in units of its file: whatever is measured on Earth, in any unit.
-/// Single precision and squares hold it.
+/// Greatest distance of a point from the origin, in units of its file: more than anything measured on Earth, in any
+/// unit. Single precision can hold it and its square.
 const FARTHEST: f64 = 1e15;
 
 /// Reads a scan.
 ///
-/// `spec` says which unit and up axis the file has; the cloud comes back in metres, +Y up. Points that are not
-/// finite, or beyond 1e15 units, are left out and told in `report`, as is everything else that was not read. Guaranteed:
-/// [`PointCloud::is_sound`], at least one point. Cost: linear; 5 million points of a binary PLY take well under a
-/// second, of a text a few.
+/// `spec` gives the unit and up axis of the file; the cloud comes back in metres, +Y up. Points that are not finite,
+/// or beyond 1e15 units, are left out and reported, as is everything else that was not read. Guaranteed:
+/// [`PointCloud::is_sound`], at least one point. Cost: linear; 5 million points take well under a second from a
+/// binary PLY, a few seconds from a text.
 ///
 /// # Errors
 /// [`CloudError`] with the place in the file and what to do.
@@ -68,6 +85,19 @@ pub fn read_cloud(
     spec: &ExportSpec,
     report: &mut Report,
 ) -> Result<PointCloud, CloudError> {
+    read_cloud_with_facts(input, format, spec, report).map(|(cloud, _)| cloud)
+}
+
+/// [`read_cloud`] with what the file says of itself.
+///
+/// # Errors
+/// [`CloudError`] with the place in the file and what to do.
+pub fn read_cloud_with_facts(
+    input: impl Read,
+    format: CloudFormat,
+    spec: &ExportSpec,
+    report: &mut Report,
+) -> Result<(PointCloud, CloudFacts), CloudError> {
     let file = |fault| CloudError::new(format, Place::File, fault);
     let mut bytes = Vec::new();
     input.take(MAX_CLOUD_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
@@ -81,34 +111,44 @@ pub fn read_cloud(
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(file(FileFault::Empty));
     }
-    FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes)).map_err(file)?;
-    let mut sink = Sink { cloud: PointCloud::default(), dropped: 0 };
+    if format != CloudFormat::E57 || !cfg!(feature = "e57") {
+        FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes)).map_err(file)?;
+    }
+    let mut sink = Sink::default();
     match format {
         CloudFormat::Ply => ply::read(&bytes, &mut sink, report)?,
         CloudFormat::Xyz => text::read(&bytes, &mut sink, report)?,
         CloudFormat::Pcd => pcd::read(&bytes, &mut sink)?,
-        CloudFormat::Las => las::read(&bytes, &mut sink)?,
-        CloudFormat::Obj => text::read_obj(&bytes, &mut sink)?,
+        CloudFormat::Las => las::read(&bytes, &mut sink, report)?,
+        CloudFormat::Obj => text::read_obj(&bytes, &mut sink, report)?,
+        #[cfg(feature = "e57")]
+        CloudFormat::E57 => e57::read(&bytes, &mut sink)?,
+        #[cfg(not(feature = "e57"))]
+        CloudFormat::E57 => {
+            let advice =
+                "read it by the command, or save it as LAS, PLY or XYZ, for example with CloudCompare";
+            return Err(file(FileFault::unsupported("a laser scan in E57", advice)));
+        }
     }
-    let Sink { mut cloud, dropped } = sink;
-    if cloud.points.is_empty() {
-        let what = if dropped > 0 {
+    drop(bytes);
+    sink.finish(report);
+    if sink.cloud.points.is_empty() {
+        let what = if sink.noise + sink.deleted > 0 {
+            "all of its points are noise, by their classes, or deleted"
+        } else if sink.dropped > 0 {
             "none of its points is finite and of a sensible size"
         } else {
             "there is no point in it"
         };
         return Err(file(FileFault::malformed(what, "export the scan again")));
     }
-    if dropped > 0 {
-        report.warn(
-            "points-not-finite",
-            format!("left out: {dropped} points that are not finite numbers or absurdly far away"),
-        );
-    }
+    let strays = strays::leave_out(&mut sink.cloud);
+    let facts = CloudFacts::collect(&sink, strays, spec, report);
+    let mut cloud = sink.cloud;
     if !spec.is_default() {
         cloud.points.iter_mut().for_each(|p| *p = spec.inward(*p));
     }
-    Ok(cloud)
+    Ok((cloud, facts))
 }
 
 /// Writes a scan as binary PLY: double coordinates, and colours where there are some.
@@ -140,27 +180,6 @@ pub fn write_cloud_ply(cloud: &PointCloud, spec: &ExportSpec, mut out: impl Writ
     Ok(())
 }
 
-/// What the readers fill.
-struct Sink {
-    cloud: PointCloud,
-    dropped: u64,
-}
-
-impl Sink {
-    /// Takes a point in; `false` when there are too many.
-    fn push(&mut self, p: [f64; 3], color: Option<[u8; 3]>) -> bool {
-        if !p.iter().all(|x| x.abs() <= FARTHEST) {
-            self.dropped += 1;
-            return true;
-        }
-        if let Some(color) = color {
-            self.cloud.colors.push(color);
-        }
-        self.cloud.points.push(DVec3::from_array(p));
-        self.cloud.points.len() <= MAX_POINTS
-    }
-}
-
 fn too_many(format: CloudFormat) -> CloudError {
     let fault = FileFault::TooMuch {
         what: "the number of points",
@@ -170,7 +189,7 @@ fn too_many(format: CloudFormat) -> CloudError {
     CloudError::new(format, Place::File, fault)
 }
 
-/// What is wrong with an LAS file at a byte.
+/// Returns the error for a fault at a byte of an LAS file.
 fn broken_las(at: usize, what: impl Into<String>) -> CloudError {
     let fault = FileFault::malformed(what, "export the scan again");
     CloudError::new(CloudFormat::Las, Place::Byte(at as u64), fault)

@@ -1,6 +1,8 @@
 //! PCD of the Point Cloud Library, versions 0.5 to 0.7.
 
-use super::{CloudFormat, MAX_POINTS, Sink, too_many};
+use super::columns::{Columns, said};
+use super::sink::Sink;
+use super::{CloudFormat, MAX_POINTS, too_many};
 use crate::error::{CloudError, FileFault, Place};
 
 const MAX_HEADER_LINES: usize = 200;
@@ -27,6 +29,16 @@ enum Coding {
     Compressed,
 }
 
+impl Coding {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::Binary => "binary",
+            Self::Compressed => "compressed",
+        }
+    }
+}
+
 struct Header {
     fields: Vec<Field>,
     points: usize,
@@ -42,19 +54,65 @@ fn truncated(at: usize, inside: impl Into<String>) -> CloudError {
     CloudError::new(CloudFormat::Pcd, Place::Byte(at as u64), FileFault::Truncated { inside: inside.into() })
 }
 
-pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
-    let header = header(bytes)?;
-    let find = |name: &str| header.fields.iter().position(|f| f.name == name);
-    let (Some(x), Some(y), Some(z)) = (find("x"), find("y"), find("z")) else {
-        return Err(fail(Place::File, "FIELDS names no x, y and z"));
+/// Which fields are used, and which are read: each once, in the order of `used`.
+struct Wanted {
+    columns: Columns,
+    used: Vec<usize>,
+}
+
+impl Wanted {
+    fn from_header(header: &Header) -> Option<Self> {
+        let mut columns = Columns::named(header.fields.iter().map(|f| f.name.as_str()))?;
+        columns.packed = columns.packed.filter(|&k| header.fields[k].size == 4);
+        let used = columns.used().collect();
+        Some(Self { columns, used })
+    }
+
+    /// Gives a point to the sink; `value`: of the k-th field that is used. `false` when there are too many.
+    fn push(&self, header: &Header, value: impl Fn(usize) -> f64, sink: &mut Sink) -> bool {
+        let place = [value(0), value(1), value(2)];
+        let said = self.columns.class.and_then(|class| said(class, value(self.used.len() - 1), sink));
+        if let Some(field) = self.columns.packed {
+            let color = unpacked(&header.fields[field], value(3));
+            return sink.push(place, Some(color), said);
+        }
+        if self.columns.color.is_some() {
+            return sink.push_raw(place, [value(3), value(4), value(5)], said);
+        }
+        sink.push(place, None, said)
+    }
+}
+
+/// A colour that is packed into the bits of a number, red uppermost: of a float, as PCL has it, or of a whole number.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bits")]
+fn unpacked(field: &Field, value: f64) -> [u8; 3] {
+    let bits = match field.kind {
+        Kind::Float => (value as f32).to_bits(),
+        Kind::Signed => value as i64 as u32,
+        Kind::Unsigned => value as u32,
     };
+    let [_, red, green, blue] = bits.to_be_bytes();
+    [red, green, blue]
+}
+
+pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
+    let mut header = header(bytes)?;
+    let wanted =
+        Wanted::from_header(&header).ok_or_else(|| fail(Place::File, "FIELDS names no x, y and z"))?;
+    if let Some(packed) = wanted.columns.packed.filter(|_| header.coding != Coding::Text) {
+        // Bits of an opaque red are no number as a float, and would not come through as one.
+        header.fields[packed].kind = Kind::Unsigned;
+    }
     if header.points > MAX_POINTS {
         return Err(too_many(CloudFormat::Pcd));
     }
+    sink.columns = header.fields.iter().map(|f| f.name.clone()).collect();
+    sink.detail = header.coding.name().to_owned();
+    let is_whole = |c: [usize; 3]| c.iter().all(|&k| header.fields[k].kind != Kind::Float);
+    sink.has_whole_colors = wanted.columns.color.is_some_and(is_whole);
     let rest = &bytes[header.body.min(bytes.len())..];
-    let wanted = [x, y, z];
     match header.coding {
-        Coding::Text => text(rest, &header, wanted, sink),
+        Coding::Text => text(rest, &header, &wanted, sink),
         Coding::Binary => {
             let stride: usize = header.fields.iter().map(|f| f.size * f.count).sum();
             if rest.len() / stride.max(1) < header.points {
@@ -63,16 +121,16 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
                 return Err(truncated(bytes.len(), inside));
             }
             let offset = |k: usize| header.fields[..k].iter().map(|f| f.size * f.count).sum::<usize>();
-            let at = wanted.map(|k| (offset(k), header.fields[k].clone()));
+            let at: Vec<(usize, &Field)> =
+                wanted.used.iter().map(|&k| (offset(k), &header.fields[k])).collect();
             for row in rest.chunks_exact(stride).take(header.points) {
-                let p = [0, 1, 2].map(|k| scalar(&row[at[k].0..], &at[k].1));
-                if !sink.push(p, None) {
+                if !wanted.push(&header, |k| scalar(&row[at[k].0..], at[k].1), sink) {
                     return Err(too_many(CloudFormat::Pcd));
                 }
             }
             Ok(())
         }
-        Coding::Compressed => compressed(rest, &header, wanted, sink),
+        Coding::Compressed => compressed(rest, &header, &wanted, sink),
     }
 }
 
@@ -164,21 +222,21 @@ fn scalar(raw: &[u8], field: &Field) -> f64 {
     }
 }
 
-fn text(rest: &[u8], header: &Header, wanted: [usize; 3], sink: &mut Sink) -> Result<(), CloudError> {
+fn text(rest: &[u8], header: &Header, wanted: &Wanted, sink: &mut Sink) -> Result<(), CloudError> {
     let column = |k: usize| header.fields[..k].iter().map(|f| f.count).sum::<usize>();
-    let columns = wanted.map(column);
+    let columns: Vec<usize> = wanted.used.iter().map(|&k| column(k)).collect();
     let mut seen = 0;
     for line in rest.split(|&b| b == b'\n') {
         if seen == header.points {
             break;
         }
-        let mut p = [f64::NAN; 3];
+        let mut values = vec![f64::NAN; columns.len()];
         let mut any = false;
         for (k, word) in line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).enumerate() {
             any = true;
             if let Some(axis) = columns.iter().position(|&c| c == k) {
                 let number = core::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
-                p[axis] = number
+                values[axis] = number
                     .ok_or_else(|| fail(Place::Item(format!("point {seen}")), "a coordinate is no number"))?;
             }
         }
@@ -186,7 +244,7 @@ fn text(rest: &[u8], header: &Header, wanted: [usize; 3], sink: &mut Sink) -> Re
             continue;
         }
         seen += 1;
-        if !sink.push(p, None) {
+        if !wanted.push(header, |k| values[k], sink) {
             return Err(too_many(CloudFormat::Pcd));
         }
     }
@@ -198,7 +256,7 @@ fn text(rest: &[u8], header: &Header, wanted: [usize; 3], sink: &mut Sink) -> Re
 }
 
 /// Two sizes, then LZF; unpacked, all values of a field follow one another.
-fn compressed(rest: &[u8], header: &Header, wanted: [usize; 3], sink: &mut Sink) -> Result<(), CloudError> {
+fn compressed(rest: &[u8], header: &Header, wanted: &Wanted, sink: &mut Sink) -> Result<(), CloudError> {
     let word = |at: usize| {
         let b =
             rest.get(at..at + 4).ok_or_else(|| truncated(header.body, "the sizes of the packed points"))?;
@@ -223,11 +281,11 @@ fn compressed(rest: &[u8], header: &Header, wanted: [usize; 3], sink: &mut Sink)
     let offset =
         |k: usize| header.fields[..k].iter().map(|f| f.size * f.count).sum::<usize>() * header.points;
     for i in 0..header.points {
-        let p = wanted.map(|k| {
-            let field = &header.fields[k];
+        let value = |k: usize| {
+            let (k, field) = (wanted.used[k], &header.fields[wanted.used[k]]);
             plain.get(offset(k) + i * field.size * field.count..).map_or(f64::NAN, |raw| scalar(raw, field))
-        });
-        if !sink.push(p, None) {
+        };
+        if !wanted.push(header, value, sink) {
             return Err(too_many(CloudFormat::Pcd));
         }
     }

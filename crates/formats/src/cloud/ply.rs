@@ -1,8 +1,10 @@
-//! PLY points. The header and its checks are those of the model reader.
+//! Points of PLY files. The header and its checks are those of the model reader.
 
 use base::Report;
 
-use super::{CloudFormat, Sink, too_many};
+use super::columns::{Columns, said};
+use super::sink::{Coding, Sink};
+use super::{CloudFormat, too_many};
 use crate::error::{CloudError, FileFault, ModelError, Place};
 use crate::model::ply_read::{Element, Input, Row, check_count, header};
 
@@ -16,7 +18,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
     let mut left_out = Vec::new();
     for element in elements.iter().filter(|e| !e.properties.is_empty()) {
         // Nothing after the points is of interest, nor worth an error.
-        if !sink.cloud.points.is_empty() || sink.dropped > 0 {
+        if sink.seen() > 0 {
             left_out.push(format!("{} {}", element.count, element.name));
             continue;
         }
@@ -31,7 +33,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
     }
     left_out.retain(|l| !l.starts_with("0 "));
     if left_out.is_empty() && input.rest() > 0 {
-        let (rest, rows) = (input.rest(), sink.cloud.points.len() as u64 + sink.dropped);
+        let (rest, rows) = (input.rest(), sink.seen());
         report.warn(
             "ply-rest",
             format!("{rest} bytes after the {rows} points that the header announces were not read: is its count right?"),
@@ -44,26 +46,27 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
 }
 
 fn vertices(input: &mut Input<'_>, element: &Element, sink: &mut Sink) -> Result<(), CloudError> {
-    let find = |names: &[&str]| element.properties.iter().position(|p| names.contains(&p.name.as_str()));
-    let all = |columns: [&[&str]; 3]| Some([find(columns[0])?, find(columns[1])?, find(columns[2])?]);
-    let Some(position) = all([&["x", "X"], &["y", "Y"], &["z", "Z"]]) else {
+    let names = || element.properties.iter().map(|p| p.name.as_str());
+    let Some(columns) = Columns::named(names()) else {
         let fault = FileFault::malformed("it has no x, y and z", "export the scan again");
         return Err(CloudError::new(CloudFormat::Ply, Place::Item("element `vertex`".into()), fault));
     };
-    let color =
-        all([&["red", "diffuse_red", "r"], &["green", "diffuse_green", "g"], &["blue", "diffuse_blue", "b"]])
-            .filter(|c| c.iter().all(|&k| element.properties[k].scalar.size() == 1));
+    sink.columns = names().map(String::from).collect();
+    let scalar = |k: usize| element.properties[k].scalar;
+    let has_bytes = columns.color.is_some_and(|c| c.iter().all(|&k| scalar(k).size() == 1));
+    sink.has_whole_colors = columns.color.is_some_and(|c| !c.iter().any(|&k| scalar(k).is_float()));
     let mut row = Row::default();
     for i in 0..element.count {
         input.row(element, i, &mut row).map_err(as_cloud)?;
         let v = &row.values;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a byte; saturation is wanted"
-        )]
-        let color = color.map(|c| c.map(|k| v[k] as u8));
-        if !sink.push(position.map(|k| v[k]), color) {
+        let place = columns.place.map(|k| v[k]);
+        let said = columns.class.and_then(|c| said(c, v[c.at], sink));
+        let color = columns.color.map(|c| c.map(|k| v[k]));
+        let taken = match color {
+            Some(color) if !has_bytes => sink.push_raw(place, color, said),
+            color => sink.push(place, color.map(|c| Coding::Byte.bytes(c)), said),
+        };
+        if !taken {
             return Err(too_many(CloudFormat::Ply));
         }
     }

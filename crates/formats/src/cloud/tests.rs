@@ -1,6 +1,14 @@
 use super::*;
 use base::{Unit, UpAxis};
+use glam::DVec3;
 use proptest::prelude::*;
+
+#[cfg(feature = "laz")]
+mod copc;
+#[cfg(feature = "e57")]
+mod e57;
+mod las;
+mod names;
 
 fn read(bytes: &[u8], format: CloudFormat) -> Result<PointCloud, String> {
     let mut report = Report::default();
@@ -143,7 +151,8 @@ fn every_format_gives_the_same_two_points() {
     assert_eq!(points(&las(2, 0.25, 1.0, 2, &[[0, 4, 8], [-6, -3, 3996]]), Las), TWO);
 }
 
-/// Points of format 0 or 6 as another program compresses them, laz-rs; and where their compressed bytes begin.
+/// Returns points of format 0 or 6 as another program, laz-rs, compresses them; and where their compressed bytes
+/// begin.
 #[cfg(feature = "laz")]
 fn packed(format: u8, places: &[[i32; 3]], variable: bool) -> (Vec<u8>, Vec<u8>, usize) {
     use std::io::Cursor;
@@ -218,7 +227,7 @@ fn compressed_las_gives_the_same_points() {
     }
 }
 
-/// More points for each byte than any scan: those of one place.
+/// The file has more points for each byte than any scan: all of them lie at one place.
 #[cfg(feature = "laz")]
 #[test]
 fn points_of_one_place_are_read_and_claims_beyond_them_are_not() {
@@ -366,7 +375,7 @@ proptest! {
     fn any_bytes_are_points_or_an_error(
         bytes in prop::collection::vec(any::<u8>(), 0..300),
         lines in prop::collection::vec("[-0-9a-z .,;e]{0,20}", 0..12),
-        which in 0..5_usize,
+        which in 0..CloudFormat::ALL.len(),
         cut in 0..400_usize,
     ) {
         let format = CloudFormat::ALL[which];

@@ -1,4 +1,4 @@
-//! Excalidraw's files (`.excalidraw`) and what it puts on the clipboard: JSON with a list of elements.
+//! Excalidraw's files (`.excalidraw`) and its clipboard text: JSON with a list of elements.
 
 use base::{LiteMap, Report, ops};
 use glam::DVec2;
@@ -11,9 +11,9 @@ use crate::DrawingFormat;
 use crate::error::{DrawingError, FileFault, Place};
 
 const FORMAT: DrawingFormat = DrawingFormat::Excalidraw;
-/// Points of a quarter of an ellipse, and of a piece of a curve.
+/// Number of points of a quarter of an ellipse, and of a piece of a curve.
 const ARC: u32 = 16;
-/// Paint of less opacity, in percent, is not seen.
+/// Paint of less than this opacity, in percent, is invisible.
 const UNSEEN: f64 = 0.5;
 
 #[derive(Deserialize)]
@@ -39,7 +39,7 @@ struct Element {
     is_deleted: bool,
     points: Vec<Vec<f64>>,
     pressures: Vec<f64>,
-    /// Only whether there is one: an object for round corners and curves, null for straight lines.
+    /// An object for round corners and curves, null for straight lines; only its presence is read.
     roundness: Option<serde::de::IgnoredAny>,
 }
 
@@ -95,7 +95,7 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     })
 }
 
-/// The figure of an element, or in a word what is left out; no word for what was deleted.
+/// Returns the figure of an element, or a word for what is left out; the word is empty for deleted elements.
 fn figure(element: &Element) -> Result<Figure, &'static str> {
     if element.is_deleted {
         return Err("");
@@ -147,7 +147,7 @@ fn figure(element: &Element) -> Result<Figure, &'static str> {
     })
 }
 
-/// From the coordinates of an element to ours: turned round the middle of its box, moved, y up.
+/// Returns the map from the coordinates of an element to ours: rotated about the centre of its box, moved, y up.
 fn placement(element: &Element, line: &[InkSample]) -> impl Fn(DVec2) -> DVec2 + use<> {
     let places: Vec<DVec2> = line.iter().map(|s| s.at).collect();
     let (lo, hi) = geom::bounds(&places).unwrap_or_default();
@@ -171,7 +171,7 @@ fn pen(element: &Element) -> Vec<InkSample> {
     points(element).enumerate().map(sample).collect()
 }
 
-/// A curve through the points, as a hand would lead it.
+/// Returns a smooth curve through the points.
 fn curve(points: &[DVec2]) -> Vec<DVec2> {
     let last = points.len().saturating_sub(1);
     let mut out: Vec<DVec2> = points.first().copied().into_iter().collect();

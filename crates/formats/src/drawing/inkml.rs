@@ -1,5 +1,5 @@
-//! `InkML` (W3C Recommendation, 2011) -> strokes. Y points down, as the standard says, unless its channel is
-//! oriented `-ve`. Brush widths and canvas transforms are left aside.
+//! `InkML` (W3C Recommendation, 2011) -> strokes. Y points down, as the standard says, unless its channel is oriented
+//! `-ve`. Brush widths and canvas transforms are ignored.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::error::{DrawingError, FileFault, Place};
 
 const FORMAT: DrawingFormat = DrawingFormat::InkMl;
 
-/// Channels of a trace; tablets have fewer than twenty.
+/// Most channels of a trace; tablets have fewer than twenty.
 const MAX_CHANNELS: usize = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ enum Role {
 #[derive(Clone, Debug)]
 struct Channel {
     role: Role,
-    /// Multiplies the value: milliseconds for times, 1 / maximum for pressures, -1 for turned axes.
+    /// Factor of the value: milliseconds for times, 1 / maximum for pressures, -1 for reversed axes.
     factor: f64,
 }
 
@@ -60,7 +60,7 @@ struct Reader<'a> {
     contexts: LiteMap<&'a str, Context>,
     layouts: LiteMap<&'a str, Layout>,
     brushes: LiteMap<&'a str, Option<[u8; 3]>>,
-    /// What plain `<context>` elements in the body set for the traces after them.
+    /// Settings of plain `<context>` elements in the body, for the traces after them.
     current: Context,
     strokes: Vec<Stroke>,
     by_id: BTreeMap<&'a str, usize>,
@@ -111,7 +111,7 @@ fn own_mode(node: Node<'_, '_>) -> Option<StrokeMode> {
 }
 
 impl<'a> Reader<'a> {
-    /// Everything that can be referred to, wherever it stands, so that order does not matter.
+    /// Collects everything that can be referred to, wherever it stands, so that order does not matter.
     fn definitions(&mut self, root: Node<'a, 'a>) -> Result<(), DrawingError> {
         for node in root.descendants().filter(|n| n.tag_name().name() == "traceFormat") {
             if let Some(id) = id(node) {
@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
         Ok(context)
     }
 
-    /// Bounded recursion: the nesting of the XML is.
+    /// Reads the traces of an element. The recursion is bounded, because the nesting of the XML is.
     fn body(
         &mut self,
         node: Node<'a, 'a>,
@@ -290,14 +290,14 @@ fn channel(node: Node<'_, '_>) -> Result<Channel, DrawingError> {
     let number = |name| node.attribute(name).and_then(|v: &str| v.trim().parse::<f64>().ok());
     let factor = match role {
         Role::X if turned => -1.0,
-        // The standard's Y grows downwards; ours upwards.
+        // In the standard Y grows downwards; ours grows upwards.
         Role::Y if !turned => -1.0,
         Role::Time => match node.attribute("units") {
             Some("s") => 1000.0,
             Some("us") => 0.001,
             _ => 1.0,
         },
-        // Without a maximum a decimal force is taken as already between 0 and 1.
+        // A decimal force without a maximum is taken to lie between 0 and 1.
         Role::Pressure => number("max").filter(|&m| m > 0.0 && m.is_finite()).map_or(1.0, |m| 1.0 / m),
         _ => 1.0,
     };
@@ -325,7 +325,7 @@ struct Track {
     known: bool,
 }
 
-/// The points of a trace. On failure: the number of the point and what is wrong.
+/// Returns the points of a trace. On failure: the number of the point and what is wrong.
 fn points(text: &str, layout: &Layout) -> Result<Vec<InkSample>, (usize, String)> {
     let mut tracks = vec![Track::default(); layout.channels.len()];
     let mut samples = Vec::new();
@@ -364,7 +364,7 @@ fn points(text: &str, layout: &Layout) -> Result<Vec<InkSample>, (usize, String)
     Ok(samples)
 }
 
-/// Reads one value of a channel: whether it is known now, and the text after it.
+/// Reads one value of a channel; returns whether it is known now, and the text after it.
 fn value<'t>(text: &'t str, track: &mut Track) -> Result<(bool, &'t str), String> {
     let mut text = text;
     let prefix = match text.as_bytes().first() {
@@ -374,14 +374,14 @@ fn value<'t>(text: &'t str, track: &mut Track) -> Result<(bool, &'t str), String
         _ => None,
     };
     if let Some(coding) = prefix {
-        // A prefix stays in force for its channel until another comes (section 3.2.1.2).
+        // A prefix stays in force for its channel until the next one (section 3.2.1.2).
         track.coding = coding;
         text = text[1..].trim_start();
     }
     let first = text.chars().next().ok_or("a prefix without a value")?;
     match first {
         '*' => {
-            // The value stays, or goes on at its speed, or goes on gaining speed.
+            // The value stays, or continues at its speed, or continues with its acceleration.
             match track.coding {
                 Coding::Explicit => {}
                 Coding::Difference => track.value += track.velocity,

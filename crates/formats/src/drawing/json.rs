@@ -56,12 +56,12 @@ pub(super) fn error_at(format: DrawingFormat, line: usize, e: &serde_json::Error
         column: Some(e.column() as u64).filter(|&c| c > 0),
     };
     let message = e.to_string();
-    // serde_json repeats the place at the end of its message, and counts lines of the fragment.
+    // serde_json repeats the place at the end of its message, and counts the lines of the fragment.
     let what = message.rsplit_once(" at line ").map_or(message.as_str(), |(head, _)| head).to_owned();
     let fault = if e.is_eof() {
         FileFault::Truncated { inside: "a JSON value".into() }
     } else if e.is_syntax() && what.starts_with("expected value") {
-        // The commonest way to get here: a program that writes its not-a-number as it is.
+        // The most frequent cause: a program that writes its not-a-number as it is.
         FileFault::malformed(
             format!("{what} (NaN and Infinity are none in JSON)"),
             "leave such points out or mend the file there",
@@ -105,7 +105,7 @@ pub(super) fn read_at(
     let mut layers = file.layers;
     for (i, stroke) in file.strokes.into_iter().enumerate() {
         let mut stroke = read_stroke(stroke, i, file.y, format, report)?;
-        // A layer that is not told of is seen.
+        // A layer that the file does not describe is visible.
         if let Some(name) = &stroke.layer
             && !layers.iter().any(|l| l.name == *name)
         {

@@ -24,12 +24,12 @@ pub use svg::write_svg;
 /// Largest file (or line of a file with a drawing a line) that is read whole: 64 MiB.
 pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
 
-/// A drawing and what its reader has to say about it.
+/// A drawing and the warnings of its reader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadDrawing {
     /// The strokes, y up.
     pub drawing: Drawing,
-    /// What was left out or taken in another way than it was drawn.
+    /// Warnings of what was left out or changed.
     pub warnings: Vec<Warning>,
 }
 
@@ -105,7 +105,7 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
         DrawingFormat::Svg => svg::read(&text, name, &mut report)?,
         DrawingFormat::Excalidraw => excalidraw::read(&text, name, &mut report)?,
         DrawingFormat::Tldraw => tldraw::read(&text, name, &mut report)?,
-        // What Excalidraw puts on the clipboard is kept under any name.
+        // A copy of Excalidraw's clipboard may be saved under any name.
         DrawingFormat::Json if DrawingFormat::sniff(text.as_bytes()) == Some(DrawingFormat::Excalidraw) => {
             excalidraw::read(&text, name, &mut report)?
         }
@@ -119,7 +119,7 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
     Ok(ReadDrawing { drawing, warnings: report.warnings })
 }
 
-/// The bytes of a file that is packed as gzip (`.svgz`), or those of any other as they are.
+/// Returns the bytes of a file: unpacked if it is packed as gzip (`.svgz`), else as they are.
 fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, FileFault> {
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(bytes);
@@ -141,7 +141,7 @@ fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, FileFault> {
     Ok(out)
 }
 
-/// The strokes that figures of a drawing program mean, and in the report what was done to them.
+/// Returns the strokes that figures of a drawing program mean, and reports what was done to them.
 ///
 /// `words`: boxes around texts.
 fn plain_strokes(
@@ -160,13 +160,13 @@ fn plain_strokes(
 /// The corners of a box of size 1, y down.
 const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-/// A closed polygon in a box of the given size.
+/// Returns a closed polygon in a box of the given size.
 fn polygon(size: DVec2, corners: &[[f64; 2]]) -> Vec<InkSample> {
     let closed = corners.iter().chain(corners.first());
     closed.map(|c| (DVec2::from(*c) * size).into()).collect()
 }
 
-/// A closed ellipse in a box of the given size, with so many points a quarter.
+/// Returns a closed ellipse in a box of the given size, with `quarter` points for a quarter.
 fn ellipse(size: DVec2, quarter: u32) -> Vec<InkSample> {
     let at = |k: u32| {
         let (sin, cos) = base::ops::sin_cos(base::ops::TAU * f64::from(k) / f64::from(4 * quarter));
@@ -175,7 +175,8 @@ fn ellipse(size: DVec2, quarter: u32) -> Vec<InkSample> {
     (0..4 * quarter).chain([0]).map(at).collect()
 }
 
-/// The XML declaration names the encoding of older drawing programs, whose bytes are the first 256 characters.
+/// Returns whether the XML declaration names the encoding of older drawing programs, whose bytes are the first 256
+/// characters.
 fn says_latin1(bytes: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_ascii_lowercase();
     let declaration = head.split("?>").next().unwrap_or_default();
@@ -183,7 +184,8 @@ fn says_latin1(bytes: &[u8]) -> bool {
         && ["iso-8859-1", "windows-1252", "latin1"].iter().any(|name| declaration.contains(name))
 }
 
-/// Text from UTF-8 (a byte order mark is dropped), UTF-16 with a byte order mark, or Latin-1 where XML says so.
+/// Decodes text from UTF-8 (a byte order mark is dropped), UTF-16 with a byte order mark, or Latin-1 if the XML
+/// declaration says so.
 pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
     FileFault::if_foreign(Foreign::sniff(&bytes))?;
     let utf16 = |big: bool| {
@@ -211,7 +213,8 @@ pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
     Ok(text)
 }
 
-/// Length of the number that `text` starts with (the grammar of SVG and ink: `1.5.5-3e2` holds three); 0 if none.
+/// Returns the length of the number that `text` starts with (the grammar of SVG and ink: `1.5.5-3e2` holds three); 0
+/// if there is none.
 pub(crate) fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {
@@ -241,7 +244,7 @@ pub(crate) fn number_end(text: &str) -> usize {
     end
 }
 
-/// `#rgb`, `#rrggbb`, `rgb(..)` and the sixteen HTML names plus the common ones that drawing programs write.
+/// Parses `#rgb`, `#rrggbb`, `rgb(..)`, the sixteen HTML names and the common ones that drawing programs write.
 pub(crate) fn parse_color(text: &str) -> Option<[u8; 3]> {
     let text = text.trim();
     if let Some(hex) = text.strip_prefix('#') {

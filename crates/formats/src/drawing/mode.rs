@@ -2,7 +2,7 @@
 
 use ink::StrokeMode;
 
-/// The mode that a name asks for: `parts`, `branch-contour` or `leaf-contour`, in any case, with `-`, `_`,
+/// Returns the mode that a name asks for: `parts`, `branch-contour` or `leaf-contour`, in any case, with `-`, `_`,
 /// spaces, camel case or nothing between the words, and with anything after (`Leaf contour 2`).
 pub(crate) fn mode_in(name: &str) -> Option<StrokeMode> {
     let words = words(name);
@@ -13,7 +13,7 @@ pub(crate) fn mode_in(name: &str) -> Option<StrokeMode> {
             "leaf" | "leaves" if contour(words.get(i + 1)) => return Some(StrokeMode::LeafContour),
             "branchcontour" | "branchcontours" => return Some(StrokeMode::BranchContour),
             "leafcontour" | "leafcontours" => return Some(StrokeMode::LeafContour),
-            // Only as the first word: `petal-parts` is somebody's name for a petal.
+            // `parts` counts only as the first word: `petal-parts` is a name for a petal.
             "parts" if i == 0 => return Some(StrokeMode::Parts),
             _ => {}
         }

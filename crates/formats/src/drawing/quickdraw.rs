@@ -22,7 +22,7 @@ struct Record {
     drawing: Vec<Vec<Vec<f64>>>,
 }
 
-/// The data set writes keys as text; other programs as numbers.
+/// A key: the data set writes keys as text, other programs as numbers.
 #[derive(Default, Deserialize)]
 #[serde(untagged)]
 enum Key {
@@ -39,7 +39,7 @@ pub(super) struct Lines<R> {
     name: String,
     line: usize,
     drawings: usize,
-    /// Reading failed: what follows would fail for ever.
+    /// Reading has failed: further attempts would fail for ever.
     broken: bool,
 }
 
@@ -158,7 +158,7 @@ fn stroke(rows: &[Vec<f64>]) -> Result<Stroke, String> {
     if xs.len() != ys.len() {
         return Err(format!("it has {} x but {} y", xs.len(), ys.len()));
     }
-    // A third row is times only if it never runs backwards: labelled data sets put part numbers there.
+    // A third row holds times only if it never decreases: labelled data sets put part numbers there.
     let times = rest.first().filter(|t| t.len() == xs.len() && t.windows(2).all(|w| w[0] <= w[1]));
     let constant = |t: &[f64]| t.len() > 1 && t.first() == t.last();
     let times = times.filter(|t| !constant(t));

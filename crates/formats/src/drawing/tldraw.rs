@@ -11,13 +11,13 @@ use crate::DrawingFormat;
 use crate::error::{DrawingError, FileFault, Place};
 
 const FORMAT: DrawingFormat = DrawingFormat::Tldraw;
-/// Points of a quarter of an ellipse.
+/// Number of points of a quarter of an ellipse.
 const ARC: u32 = 16;
-/// Deepest groups in groups.
+/// Deepest nesting of groups.
 const MAX_DEPTH: usize = 64;
-/// Paint of less opacity is not seen.
+/// Paint of less than this opacity is invisible.
 const UNSEEN: f64 = 0.005;
-/// The names of colours as tldraw shows them on paper.
+/// Colours of tldraw by name, as it shows them on paper.
 const COLORS: [(&str, [u8; 3]); 13] = [
     ("black", [29, 29, 29]),
     ("grey", [159, 168, 178]),
@@ -33,7 +33,7 @@ const COLORS: [(&str, [u8; 3]); 13] = [
     ("red", [224, 49, 49]),
     ("white", [255, 255, 255]),
 ];
-/// The widths of the four pens.
+/// Widths of the four pens.
 const PENS: [(&str, f64); 4] = [("s", 2.0), ("m", 3.5), ("l", 5.0), ("xl", 10.0)];
 
 pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawing, DrawingError> {
@@ -74,7 +74,7 @@ fn number(value: &Value, key: &str) -> Option<f64> {
     value.get(key).and_then(Value::as_f64)
 }
 
-/// Shapes from the outermost group to this one.
+/// Returns the shapes from the outermost group to this one.
 fn ancestors<'v>(shapes: &LiteMap<&'v str, &'v Value>, shape: &'v Value) -> Vec<&'v Value> {
     let mut out = vec![shape];
     let mut at = shape;
@@ -86,12 +86,13 @@ fn ancestors<'v>(shapes: &LiteMap<&'v str, &'v Value>, shape: &'v Value) -> Vec<
     out
 }
 
-/// The order of a shape on the page: the indices of its groups and its own.
+/// Returns the order of a shape on the page: the indices of its groups and its own.
 fn way<'v>(shapes: &LiteMap<&'v str, &'v Value>, shape: &'v Value) -> Vec<&'v str> {
     ancestors(shapes, shape).into_iter().map(|s| word(s, "index")).collect()
 }
 
-/// The figure of a shape, or in a word what is left out; no word for groups, whose shapes are read.
+/// Returns the figure of a shape, or a word for what is left out; the word is empty for groups, whose shapes are
+/// read.
 fn figure<'v>(shapes: &LiteMap<&'v str, &'v Value>, shape: &'v Value) -> Result<Figure, &'static str> {
     let empty = Value::Null;
     let props = shape.get("props").unwrap_or(&empty);
@@ -154,7 +155,7 @@ fn own_place(shape: &Value) -> DAffine2 {
     DAffine2::from_cols_array(&[cos, sin, -sin, cos, at.x, at.y])
 }
 
-/// The samples of the pen's segments.
+/// Returns the samples of the pen's segments.
 fn pen(props: &Value) -> Result<Vec<InkSample>, &'static str> {
     let scale = DVec2::new(number(props, "scaleX").unwrap_or(1.0), number(props, "scaleY").unwrap_or(1.0));
     let pressed = props.get("isPen").and_then(Value::as_bool).unwrap_or(false);
@@ -175,7 +176,7 @@ fn pen(props: &Value) -> Result<Vec<InkSample>, &'static str> {
     Ok(out)
 }
 
-/// The points of a line: a map, in the order of their indices.
+/// Returns the points of a line: a map, in the order of their indices.
 fn corners(props: &Value) -> Vec<InkSample> {
     let points = props.get("points").and_then(Value::as_object);
     let mut all: Vec<(&str, DVec2)> = points

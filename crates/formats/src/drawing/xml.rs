@@ -1,4 +1,4 @@
-//! XML within bounds: what roxmltree does not limit itself is counted before it starts.
+//! XML within bounds: the size of everything that roxmltree does not limit is counted before it starts.
 
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -9,16 +9,16 @@ use crate::error::{DrawingError, FileFault, Place};
 pub(super) const MAX_DEPTH: usize = 256;
 /// Most elements and texts of a file.
 const MAX_NODES: u32 = 4_000_000;
-/// roxmltree compares every attribute of an element with every other.
+/// Most attributes of an element: roxmltree compares each with every other.
 const MAX_ATTRIBUTES: usize = 500;
-/// roxmltree copies the name spaces in scope for every element that declares one.
+/// Most name spaces: roxmltree copies those in scope for every element that declares one.
 const MAX_NAMESPACES: usize = 2_000;
-/// Bytes that entities may expand to.
+/// Most bytes to which entities may expand.
 const MAX_EXPANSION: u64 = 256 << 20;
 
 const SIMPLIFY: &str = "save it as plain SVG or simplify it in the drawing program";
 
-/// Parses `text`, refusing what would cost more than the file is worth.
+/// Parses `text`; refuses it if that would cost too much.
 pub(super) fn parse(text: &str, format: DrawingFormat) -> Result<Document<'_>, DrawingError> {
     scan(text, format)?;
     let limit = |what, limit| FileFault::TooMuch { what, limit, advice: SIMPLIFY };
@@ -48,7 +48,7 @@ pub(super) fn parse(text: &str, format: DrawingFormat) -> Result<Document<'_>, D
     })
 }
 
-/// Tag and id of an element, with its line.
+/// Returns tag and id of an element, with its line.
 pub(super) fn place(node: Node<'_, '_>) -> Place {
     let position = node.document().text_pos_at(node.range().start);
     let tag = node.tag_name().name();
@@ -59,7 +59,7 @@ pub(super) fn place(node: Node<'_, '_>) -> Place {
     Place::Element { name, line: u64::from(position.row) }
 }
 
-/// An upper bound of the bytes that entity references can become: roxmltree follows at most 255 references
+/// Returns an upper bound of the bytes that entity references can become: roxmltree follows at most 255 references
 /// inside one reference, and one value cannot be longer than the document type declaration.
 fn expansion(text: &str) -> u64 {
     if !text.contains("<!ENTITY") {
@@ -85,7 +85,7 @@ fn line_column(text: &str, at: usize) -> Place {
     Place::Line { line, column: Some(column) }
 }
 
-/// Walks over the tags once: bounds depth, attributes and name spaces, and says where a cut-off file ends.
+/// Walks over the tags once: bounds depth, attributes and name spaces, and finds where a truncated file ends.
 fn scan(text: &str, format: DrawingFormat) -> Result<(), DrawingError> {
     let bytes = text.as_bytes();
     let mut open: Vec<usize> = Vec::new();
@@ -161,7 +161,7 @@ fn find(bytes: &[u8], from: usize, what: &[u8]) -> Option<usize> {
     }
 }
 
-/// One past the `>` that ends the tag at `start`, and the number of its attributes.
+/// Returns the position after the `>` that ends the tag at `start`, and the number of its attributes.
 fn tag_end(bytes: &[u8], start: usize) -> Option<(usize, usize)> {
     let mut quote = None;
     let mut attributes = 0;

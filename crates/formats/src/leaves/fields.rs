@@ -2,7 +2,7 @@
 
 use crate::error::FileFault;
 
-/// How the lines of a file are divided, as its first line says.
+/// Separator of the fields of a file, as its first line shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Fields {
     separator: char,
@@ -10,7 +10,7 @@ pub(super) struct Fields {
 }
 
 impl Fields {
-    /// Semicolons where there is one, else tabs, else commas.
+    /// Chooses semicolons if there is one, else tabs, else commas.
     pub(super) fn of_header(header: &str) -> Self {
         let separator = [';', '\t'].into_iter().find(|&s| header.contains(s)).unwrap_or(',');
         Self { separator, count: header.split(separator).count() }
@@ -20,10 +20,10 @@ impl Fields {
         line.split(self.separator).map(str::trim).collect()
     }
 
-    /// [`split`](Self::split) of a line of data.
+    /// Applies [`split`](Self::split) to a line of data.
     ///
     /// # Errors
-    /// More fields than the first line has names: commas that are decimal signs, say.
+    /// The line has more fields than the first line has names, for example because of commas that are decimal signs.
     pub(super) fn row<'a>(&self, line: &'a str) -> Result<Vec<&'a str>, FileFault> {
         let fields = self.split(line);
         let used = fields.iter().rposition(|f| !f.is_empty()).map_or(0, |k| k + 1);
@@ -38,7 +38,7 @@ impl Fields {
         Ok(fields)
     }
 
-    /// A number; with a decimal comma where commas separate nothing.
+    /// Parses a number; it may have a decimal comma if commas do not separate fields.
     pub(super) fn number(&self, text: &str) -> Option<f64> {
         let parsed = match self.separator {
             ',' => text.parse(),

@@ -10,17 +10,17 @@ use serde::Deserialize;
 use super::LeafFileError;
 use crate::error::{FileFault, Place};
 
-// Ten times the network of a leaf traced at 1200 dots per inch.
+// Most nodes: ten times the network of a leaf traced at 1200 dots per inch.
 const MAX_NODES: usize = 100_000;
 
-/// What was in a file of a vein graph.
+/// Contents of a file of a vein graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadGraph {
-    /// The network in metres, y upwards; in units of the file where `unit` is none.
+    /// The network in metres, y upwards; in units of the file if `unit` is none.
     pub graph: VeinGraph,
     /// The unit of the file; none for pixels.
     pub unit: Option<Unit>,
-    /// What was odd and what was done about it.
+    /// Warnings of the reader.
     pub warnings: Vec<Warning>,
 }
 
@@ -39,7 +39,7 @@ struct GraphFile {
 /// have y upwards. Edges name nodes from 0.
 ///
 /// # Errors
-/// [`LeafFileError`] for text that is no such JSON, an unknown unit, and more than 100,000 nodes.
+/// [`LeafFileError`] for text that is not such JSON, an unknown unit, and more than 100,000 nodes.
 pub fn read_vein_graph(input: impl Read) -> Result<ReadGraph, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let text = super::text(input)?;

@@ -8,10 +8,10 @@ use super::LeafFileError;
 use super::fields::Fields;
 use crate::error::{FileFault, Place};
 
-/// Whether a column is of one kind.
+/// A test for one kind of column.
 type IsColumn = fn(&Column) -> bool;
 
-/// More measurements than anybody types.
+/// Most measurements, more than anybody types.
 const MOST: usize = 200_000;
 
 /// One measurement.
@@ -29,18 +29,19 @@ pub struct GrowthEntry {
     pub group: String,
 }
 
-/// How a growth table is read.
+/// Settings for reading a growth table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct GrowthSpec {
-    /// The unit of sizes, where the table says none.
+    /// The unit of sizes if the table gives none.
     pub unit: Unit,
-    /// The heading of the column of plants, where it is not one of the usual ones.
+    /// The heading of the column of plants, if it is not one of the usual ones.
     pub plant: Option<String>,
-    /// The heading of the column of sizes: of a table with several.
+    /// The heading of the column of sizes, if the table has several.
     pub size: Option<String>,
     /// The heading of the column of groups.
     pub by: Option<String>,
-    /// The order of day, month and year in dates such as 3/4/2024; none: as a date with a day after the twelfth tells.
+    /// The order of day, month and year in dates such as 3/4/2024; if none, a date with a day after the twelfth
+    /// decides.
     pub dates: Option<DateOrder>,
 }
 
@@ -55,41 +56,45 @@ pub enum DateOrder {
 
 base::words!(DateOrder { Dmy = "dmy", Mdy = "mdy" });
 
-/// What was in a growth table.
+/// Contents of a growth table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadGrowth {
-    /// The measurements, in the order of the file; of a wide table line by line.
+    /// The measurements, in the order of the file; from a wide table line by line.
     pub rows: Vec<GrowthEntry>,
-    /// The unit that the file says, in a heading or in a line `# unit: mm`.
+    /// The unit that the file gives, in a heading or in a line `# unit: mm`.
     pub unit: Option<Unit>,
-    /// The unit of time that a heading says (`age_years`); days otherwise, and where days are dates.
+    /// The unit of time that a heading gives (`age_years`); days if it gives none, or if the days are dates.
     pub time: TimeUnit,
-    /// What was odd and what was done about it.
+    /// Warnings of the reader.
     pub warnings: Vec<Warning>,
 }
 
-/// Names that a column may have; the first is the one that messages use.
+/// Names that the column of days may have; the first is the one that messages use.
 const DAY: [&str; 5] = ["day", "age", "time", "days", "date"];
+/// Names that the column of sizes may have.
 const SIZE: [&str; 7] = ["size", "length", "height", "width", "circumference", "diameter", "value"];
+/// Names that the column of organs may have.
 const ORGAN: [&str; 2] = ["organ", "leaf"];
+/// Names that the column of plants may have.
 const PLANT: [&str; 4] = ["plant", "tree", "id", "subject"];
-/// Cells in which nothing was measured.
+/// Contents of cells in which nothing was measured.
 const MISSING: [&str; 4] = ["", "na", "nan", "-"];
 
 /// Reads a growth table: `day,size[,organ][,plant]`, one line a measurement.
 ///
-/// The first line names the columns, in any order; `day` may also be called age, time or date, `size` length, height, width,
-/// circumference, diameter or value, `plant` tree or id. A heading may have its unit (`height_cm`, `Height (cm)`), which wins
-/// over a line `# unit: mm`, which wins over `unit`; that of `day` may have one of time (`age_years`, `Time (weeks)`). Days are
-/// numbers or dates (2024-03-05, 05.03.2024; 5/3/2024 where one of them is after the twelfth, or [`GrowthSpec::dates`] tells), which
-/// count from the first one. Without a column of sizes a table is wide: each column besides the day is an organ or a plant, or each column is a day
-/// (`plant,0,3,7`) and each line an organ or a plant. Other columns are left out with a warning. Fields are separated as in
-/// [`read_marks`](crate::read_marks). Cells without a size are left out: a day on which nothing was measured; and so are empty
-/// lines, also those that spreadsheets pad with separators.
+/// The first line names the columns, in any order; `day` may also be called age, time or date, `size` length, height,
+/// width, circumference, diameter or value, `plant` tree or id. A heading may have its unit (`height_cm`, `Height
+/// (cm)`), which wins over a line `# unit: mm`, which wins over `unit`; that of `day` may have one of time
+/// (`age_years`, `Time (weeks)`). Days are numbers or dates, which count from the first one (2024-03-05, 05.03.2024;
+/// 5/3/2024 if the day of one of them is after the twelfth or [`GrowthSpec::dates`] gives the order). A table without
+/// a column of sizes is wide: each column other than the day is an organ or a plant, or each column is a day
+/// (`plant,0,3,7`) and each line an organ or a plant. Other columns are left out with a warning. Fields are separated
+/// as in [`read_marks`](crate::read_marks). Cells without a size are left out, because nothing was measured; and so
+/// are empty lines, also those that spreadsheets pad with separators.
 ///
 /// # Errors
-/// [`LeafFileError`] with the line, for columns that are missing or there twice, numbers that are none, and sizes that
-/// are negative.
+/// [`LeafFileError`] with the line, for columns that are missing or repeated, cells that are not numbers, and sizes
+/// that are negative.
 pub fn read_growth(input: impl Read, spec: &GrowthSpec) -> Result<ReadGrowth, LeafFileError> {
     let text = super::text(input)?;
     let mut header: Option<Header> = None;
@@ -132,11 +137,7 @@ pub fn read_growth(input: impl Read, spec: &GrowthSpec) -> Result<ReadGrowth, Le
         out.warnings.push(Warning { code: "days-from-dates", message, fields: Vec::new() });
     }
     out.rows.extend(found.rows.into_iter().map(|Row { mut entry, unit }| {
-        entry.size *= match unit.unwrap_or(fallback) {
-            Unit::Metre => 1.0,
-            Unit::Centimetre => 0.01,
-            Unit::Millimetre => 0.001,
-        };
+        entry.size *= unit.unwrap_or(fallback).metres();
         entry.day -= first.unwrap_or(0.0);
         entry
     }));
@@ -147,9 +148,9 @@ pub fn read_growth(input: impl Read, spec: &GrowthSpec) -> Result<ReadGrowth, Le
 #[derive(Default)]
 struct Found {
     rows: Vec<Row>,
-    /// Cells without a size.
+    /// Number of cells without a size.
     empty: usize,
-    /// Days are dates, and all of them are.
+    /// The days are dates, all of them.
     dates: bool,
     numbers: bool,
 }
@@ -170,7 +171,7 @@ fn unit_of(comment: &str) -> Result<Option<Unit>, FileFault> {
     Unit::from_word(&word).map(Some).ok_or_else(unknown)
 }
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Clone, Debug, PartialEq)]
 enum Column {
     Day,
@@ -199,7 +200,7 @@ struct Header {
     order: Option<DateOrder>,
 }
 
-/// A heading of time without its unit, and that unit: `age_years`, `Time (weeks)`.
+/// Returns a heading of time without its unit, and that unit: `age_years`, `Time (weeks)`.
 fn without_time(heading: &str) -> Option<(String, TimeUnit)> {
     let word = heading.to_ascii_lowercase();
     let bare = word.trim_end_matches([')', ']']).trim_end();
@@ -215,7 +216,7 @@ fn without_time(heading: &str) -> Option<(String, TimeUnit)> {
     Some((name.trim_end_matches(['_', '(', '[', ' ']).to_owned(), unit))
 }
 
-/// A heading without its unit, in small letters, and that unit: `height_cm`, `Height (cm)`, `height [cm]`.
+/// Returns a heading without its unit, in lower case, and that unit: `height_cm`, `Height (cm)`, `height [cm]`.
 fn without_unit(heading: &str) -> (String, Option<Unit>) {
     let word = heading.to_ascii_lowercase();
     let bare = word.trim_end_matches([')', ']']).trim_end();
@@ -227,12 +228,12 @@ fn without_unit(heading: &str) -> (String, Option<Unit>) {
     found.unwrap_or((word, None))
 }
 
-/// Whether a heading is the one that was asked for: as it is written, but for its case and its unit.
+/// Returns whether a heading is the requested one, apart from its case and its unit.
 fn is_heading(name: &str, wanted: &str) -> bool {
     name.eq_ignore_ascii_case(wanted) || without_unit(name).0.eq_ignore_ascii_case(wanted)
 }
 
-/// What a column holds by its heading, and the unit of time that it says.
+/// Returns the content of a column according to its heading, and the unit of time that the heading gives.
 fn column_of(name: &str, spec: &GrowthSpec) -> (Column, Option<TimeUnit>) {
     let asked = |wanted: &Option<String>| wanted.as_deref().is_some_and(|w| is_heading(name, w));
     let (word, unit) = without_unit(name);
@@ -313,7 +314,7 @@ impl Header {
         Ok(Self { fields, columns, time, order })
     }
 
-    /// Adds what a line has.
+    /// Adds the measurements of a line.
     fn add(&self, line: &str, found: &mut Found) -> Result<(), FileFault> {
         let cells: Vec<&str> = self.fields.row(line)?.iter().map(|c| c.trim_matches('"').trim()).collect();
         let cell = |wanted: &Column| {
@@ -387,7 +388,7 @@ impl Found {
     }
 }
 
-/// Columns of a table without a column of sizes: series beside a day, or days.
+/// Turns the columns of a table without a column of sizes into series next to a column of days, or into days.
 fn widen(names: &[&str], columns: &mut [Column], has_day: bool, warnings: &mut Vec<Warning>) {
     let unknown = |c: &Column| *c == Column::Other;
     let wide: Vec<Option<Column>> = names
@@ -399,7 +400,7 @@ fn widen(names: &[&str], columns: &mut [Column], has_day: bool, warnings: &mut V
             }
             if has_day {
                 let (word, unit) = without_unit(name);
-                // As it is written, but for the unit.
+                // The heading as written, without the unit.
                 let own = unit.map_or(*name, |_| name.get(..word.len()).unwrap_or(name));
                 return Some(Column::Series(own.chars().take(200).collect(), unit));
             }
@@ -407,7 +408,7 @@ fn widen(names: &[&str], columns: &mut [Column], has_day: bool, warnings: &mut V
         })
         .collect();
     let has_unit = wide.iter().flatten().any(|c| matches!(c, Column::Series(_, Some(_))));
-    // One column by another name is no wide table: it may be anything.
+    // One column with another name does not make a wide table: it may be anything.
     if wide.iter().flatten().count() < 2 && !has_unit {
         return;
     }
@@ -427,7 +428,7 @@ fn widen(names: &[&str], columns: &mut [Column], has_day: bool, warnings: &mut V
     }
 }
 
-/// A heading that is a day: `7`, `day 7`, `d7`, `2024-03-05`.
+/// Parses a heading that is a day: `7`, `day 7`, `d7`, `2024-03-05`.
 fn day_heading(name: &str) -> Option<Moment> {
     let word = name.to_ascii_lowercase();
     let bare = ["days", "day", "d"].into_iter().find_map(|w| word.strip_prefix(w)).unwrap_or(&word);
@@ -435,14 +436,14 @@ fn day_heading(name: &str) -> Option<Moment> {
     number.map(Moment::Number).or_else(|| date(name).map(Moment::Date))
 }
 
-/// Three numbers with a sign between them, also with a time behind them.
+/// Parses three numbers with a sign between them; a time may follow.
 fn numbers_of(text: &str, sign: char) -> Option<[u32; 3]> {
     let head = text.split(['T', ' ']).next()?;
     let parts: Vec<u32> = head.split(sign).map(|p| p.parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
 }
 
-/// The order of dates such as 3/4/2024 in a text, if one of them has a day after the twelfth.
+/// Returns the order of dates such as 3/4/2024 in a text, if one of them has a day after the twelfth.
 fn order_in(text: &str) -> Option<DateOrder> {
     let cells = text.split([',', ';', '\t', '\n', '\r', '"']).map(str::trim);
     let dates = cells.filter_map(|cell| numbers_of(cell, '/')).filter(|[_, _, year]| *year >= 1000);
@@ -453,7 +454,7 @@ fn order_in(text: &str) -> Option<DateOrder> {
             (false, true) => DateOrder::Mdy,
             _ => continue,
         };
-        // Two that contradict each other tell nothing.
+        // Dates that contradict each other do not decide.
         if found.is_some_and(|f| f != own) {
             return None;
         }
@@ -462,7 +463,7 @@ fn order_in(text: &str) -> Option<DateOrder> {
     found
 }
 
-/// [`date`] of 3/4/2024.
+/// Does the same as [`date`] for 3/4/2024.
 fn slashed(text: &str, order: DateOrder) -> Option<f64> {
     let [a, b, year] = numbers_of(text, '/')?;
     match order {
@@ -471,7 +472,7 @@ fn slashed(text: &str, order: DateOrder) -> Option<f64> {
     }
 }
 
-/// Days since 1 March of the year 0 of a date: 2024-03-05, 2024/03/05 or 05.03.2024, also with a time behind it.
+/// Returns the days from 1 March of the year 0 to a date: 2024-03-05, 2024/03/05 or 05.03.2024; a time may follow.
 pub(super) fn date(text: &str) -> Option<f64> {
     match (numbers_of(text, '-').or_else(|| numbers_of(text, '/')), numbers_of(text, '.')) {
         (Some(ymd), _) => day_of(ymd),
@@ -480,7 +481,7 @@ pub(super) fn date(text: &str) -> Option<f64> {
     }
 }
 
-/// Days since 1 March of the year 0.
+/// Returns the days since 1 March of the year 0.
 fn day_of([year, month, day]: [u32; 3]) -> Option<f64> {
     let is_leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
     let days = [31, if is_leap { 29 } else { 28 }, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
@@ -488,15 +489,15 @@ fn day_of([year, month, day]: [u32; 3]) -> Option<f64> {
     if !(1000..=9999).contains(&year) || !(1..=last).contains(&day) {
         return None;
     }
-    // A year that begins in March has its odd day at the end.
+    // If the year begins in March, the leap day is its last.
     let (y, m) = if month < 3 { (year - 1, month + 9) } else { (year, month - 3) };
     Some(f64::from(365 * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + day - 1))
 }
 
-/// The date of a day that [`date`] gave.
+/// Returns the date of a day that [`date`] returned.
 pub(super) fn date_of(day: f64) -> String {
     let day = ops::whole(day);
-    // The year whose first of March is the last one before.
+    // The last year whose first of March is not after the day.
     let mut y = day / 366;
     let first = |y: u32| 365 * y + y / 4 - y / 100 + y / 400;
     while first(y + 1) <= day {

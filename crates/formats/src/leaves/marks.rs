@@ -11,14 +11,14 @@ use super::LeafFileError;
 use super::fields::Fields;
 use crate::error::{FileFault, Place, WriteError};
 
-// More side veins than any leaf has; keeps a slip such as row 1000000 from filling memory.
+// Most rows, more side veins than any leaf has; keeps a slip such as row 1000000 from filling memory.
 const MAX_ROWS: usize = 10_000;
-// A point every tenth of a millimetre round a leaf of a metre.
+// Most points of the margin: a point every tenth of a millimetre round a leaf of a metre.
 const MAX_MARGIN: usize = 20_000;
-/// What stands for a row in the key of a point of the margin.
+/// The row in the key of a point of the margin.
 const MARGIN: usize = usize::MAX;
 
-/// Unit and up axis of a file that does not say them.
+/// Unit and up axis of a file that does not give them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MarksAxes {
     /// Unit of coordinates and thickness.
@@ -27,20 +27,20 @@ pub struct MarksAxes {
     pub up: UpAxis,
 }
 
-/// What was in a file of marks.
+/// Contents of a file of marks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadMarks {
     /// The leaf's name in the file, or the one given to the reader.
     pub name: String,
     /// The marks in metres, +Y up.
     pub marks: Marks,
-    /// What thickness means, where the file says so.
+    /// Meaning of the thickness, if the file gives it.
     pub thickness: Option<ThicknessRule>,
-    /// Unit and up axis that were taken: the file's, or those given to the reader.
+    /// Unit and up axis that were used: the file's, or those given to the reader.
     pub axes: MarksAxes,
-    /// The file says its unit; else that of the reader was taken.
+    /// The file gives its unit; if not, that of the reader was used.
     pub is_unit_said: bool,
-    /// What was odd and what was done about it.
+    /// Warnings of the reader.
     pub warnings: Vec<Warning>,
 }
 
@@ -65,16 +65,15 @@ struct Entry {
 /// Reads marks: `row,mark,x,y,z,thickness,midrib`, one line a mark.
 ///
 /// Rows count from 1 at the tip, marks from 1 (right margin) to 7 (left margin); the tip is a line whose row is
-/// `tip`, or a row 0, or a first row of seven equal points. Rows `margin` are points of a margin of the leaf's own, marks
-/// counted once round it; without them the margin is that of the rows' ends. `thickness` is the side vein's, `midrib` the
-/// midrib's at mark 4 and at the tip; both may be empty. Fields are separated as those of the first line: by commas,
-/// semicolons or tabs; by the latter two, numbers may have decimal commas.
-/// Lines `# unit: mm`, `# up: z`, `# thickness: radius` and `# name: ...` say how to read it and win over
-/// `axes`.
+/// `tip`, or a row 0, or a first row of seven equal points. Rows `margin` are points of a separate margin, with marks
+/// counted once round it; without them the margin is that of the rows' ends. `thickness` is the side vein's, `midrib`
+/// the midrib's at mark 4 and at the tip; both may be empty. Fields are separated as those of the first line: by
+/// commas, semicolons or tabs; with the latter two, numbers may have decimal commas.
+/// Lines `# unit: mm`, `# up: z`, `# thickness: radius` and `# name: ...` describe the file and win over `axes`.
 ///
 /// # Errors
-/// [`LeafFileError`] with the line, for missing, repeated or extra marks, rows that are left out, numbers that
-/// are none, and thickness that is not above 0.
+/// [`LeafFileError`] with the line, for missing, repeated or extra marks, rows that are left out, cells that are not
+/// numbers, and thickness that is not above 0.
 pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadMarks, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let text = super::text(input)?;
@@ -137,7 +136,7 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
         });
     }
     let length = out.marks.length();
-    // 2 mm to 10 m: from the smallest leaf that callipers can measure to a palm's.
+    // 2 mm to 10 m: from the smallest leaf that callipers can measure to that of a palm.
     if !(0.002..=10.0).contains(&length) {
         out.warnings.push(Warning {
             code: "leaf-size",
@@ -151,12 +150,12 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
     Ok(out)
 }
 
-/// Whether a comment is `unit: ...`.
+/// Returns whether a comment is `unit: ...`.
 pub(super) fn says_unit(comment: &str) -> bool {
     comment.split_once(':').is_some_and(|(key, _)| key.trim().eq_ignore_ascii_case("unit"))
 }
 
-/// `# key: value`; other comments are left alone.
+/// Reads `# key: value`; other comments are ignored.
 pub(super) fn setting(
     comment: &str,
     axes: &mut MarksAxes,
@@ -219,7 +218,7 @@ fn header(fields: &[&str]) -> Result<Columns, FileFault> {
     }
 }
 
-/// Where a line belongs and what it says. The tip is (0, 1).
+/// Returns the place of a line's mark and its values. The tip is (0, 1).
 fn mark(
     columns: &Columns,
     format: &Fields,
@@ -402,7 +401,7 @@ pub fn write_marks(marks: &Marks, name: &str, mut out: impl Write) -> Result<(),
     Ok(())
 }
 
-/// A file to fill in, with `rows` rows and instructions.
+/// Returns a file to fill in, with `rows` rows and instructions.
 pub fn marks_template(rows: usize) -> String {
     let rows = rows.clamp(2, MAX_ROWS);
     let mut text = String::from(

@@ -24,13 +24,13 @@ pub use sheet::{ReadSheet, read_xlsx};
 /// Largest file of a leaf that is read: 16 MiB, far more than a person can measure.
 pub const MAX_LEAF_BYTES: u64 = 16 << 20;
 
-/// A file of a leaf could not be read.
+/// Error of reading a file of a leaf.
 #[derive(Debug, thiserror::Error)]
 #[error("leaf file{place}: {fault}")]
 pub struct LeafFileError {
     /// Where.
     pub place: Place,
-    /// What and what to do.
+    /// The fault, and what to do.
     pub fault: FileFault,
 }
 
@@ -40,7 +40,7 @@ impl LeafFileError {
     }
 }
 
-/// What a file of a leaf holds.
+/// Contents of a file of a leaf.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LeafFile {
@@ -50,14 +50,14 @@ pub enum LeafFile {
     Rays(ReadRays),
     /// A network of veins: JSON with `nodes_xyr`.
     Graph(ReadGraph),
-    /// Midribs from the side with widths: JSON with `x`, `y`, `s`, `r`.
+    /// Midribs in side view with widths: JSON with `x`, `y`, `s`, `r`.
     Profiles(ReadProfiles),
 }
 
-/// Reads a file of a leaf, of whatever kind it is by what stands in it.
+/// Reads a file of a leaf; its kind follows from its contents.
 ///
 /// # Errors
-/// [`LeafFileError`], as the reader of that kind.
+/// [`LeafFileError`], from the reader of that kind.
 pub fn read_leaf_file(input: impl Read, name: &str, axes: MarksAxes) -> Result<LeafFile, LeafFileError> {
     let text = text(input)?;
     let start = text.trim_start_matches('\u{feff}').trim_start();
@@ -68,7 +68,7 @@ pub fn read_leaf_file(input: impl Read, name: &str, axes: MarksAxes) -> Result<L
             false => LeafFile::Marks(read_marks(bytes, name, axes)?),
         });
     }
-    // Lists are of profiles; so is an object that has them, or is one.
+    // Lists hold profiles; so does an object that has `leaves` or is a profile itself.
     let graph = start.starts_with('{') && !(text.contains("\"leaves\"") || text.contains("\"s\""));
     Ok(match graph {
         true => LeafFile::Graph(read_vein_graph(text.as_bytes())?),
@@ -76,20 +76,20 @@ pub fn read_leaf_file(input: impl Read, name: &str, axes: MarksAxes) -> Result<L
     })
 }
 
-/// What spreadsheets put around a text of one cell: quotes, and separators of the cells that are empty.
+/// Characters that spreadsheets put around a text of one cell: quotes, and separators of the cells that are empty.
 const PADDING: [char; 5] = [',', ';', '\t', '"', ' '];
 
-/// The comment of a line, also of one that a spreadsheet saved.
+/// Returns the comment of a line, also of one that a spreadsheet saved.
 fn comment_of(line: &str) -> Option<&str> {
     line.trim_matches(PADDING).strip_prefix('#')
 }
 
-/// A line without a cell in it.
+/// Returns whether no cell of a line holds anything.
 fn is_blank(line: &str) -> bool {
     line.trim_matches(PADDING).is_empty()
 }
 
-/// All of a file of a leaf.
+/// Reads a whole file of a leaf as text.
 fn text(input: impl Read) -> Result<String, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! Leaves measured from the side, as JSON: midribs `x`, `y` and widths `r` at `s`.
+//! Leaves measured in side view, as JSON: midribs `x`, `y` and widths `r` at `s`.
 
 use std::io::Read;
 
@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::{LeafFileError, MarksAxes};
 use crate::error::{FileFault, Place};
 
-/// More leaves than a plant has, and more points than anybody digitises on one.
+/// Most leaves, more than a plant has, and most points on one, more than anybody digitises.
 const MOST: usize = 10_000;
 
 /// One leaf of a file of profiles.
@@ -23,14 +23,14 @@ pub struct ReadProfile {
     pub profile: LeafProfile,
 }
 
-/// What was in a file of profiles.
+/// Contents of a file of profiles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadProfiles {
     /// The leaves in their order, at least one.
     pub leaves: Vec<ReadProfile>,
-    /// The unit that was taken: the file's, or the one given to the reader.
+    /// The unit that was used: the file's, or the one given to the reader.
     pub axes: MarksAxes,
-    /// The file says its unit; else that of the reader was taken.
+    /// The file gives its unit; if not, that of the reader was used.
     pub is_unit_said: bool,
 }
 
@@ -72,7 +72,7 @@ const ADVICE: &str = "a leaf is {\"x\": [...], \"y\": [...], \"s\": [...], \"r\"
 /// whatever `axes` say.
 ///
 /// # Errors
-/// [`LeafFileError`] for text that is no such JSON, lists of unlike length, and an unknown unit.
+/// [`LeafFileError`] for text that is not such JSON, lists of different lengths, and an unknown unit.
 pub fn read_profiles(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadProfiles, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let text = super::text(input)?;

@@ -11,25 +11,25 @@ use super::fields::Fields;
 use super::{LeafFileError, MarksAxes};
 use crate::error::{FileFault, Place, WriteError};
 
-/// More lines of marks, and more marks on one, than anybody digitises.
+/// Most lines of marks, and most marks on one, more than anybody digitises.
 const MOST: usize = 1000;
 
-/// What was in a file of chief veins.
+/// Contents of a file of chief veins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadRays {
     /// The leaf's name in the file, or the one given to the reader.
     pub name: String,
     /// The lines of marks in metres, +Y up.
     pub rays: Rays,
-    /// What thickness means, where the file says so.
+    /// Meaning of the thickness, if the file gives it.
     pub thickness: Option<ThicknessRule>,
-    /// Unit and up axis that were taken: the file's, or those given to the reader.
+    /// Unit and up axis that were used: the file's, or those given to the reader.
     pub axes: MarksAxes,
-    /// The file says its unit; else that of the reader was taken.
+    /// The file gives its unit; if not, that of the reader was used.
     pub is_unit_said: bool,
 }
 
-/// The text of a leaf starts with the column `vein`: it is for [`read_rays`], not for
+/// Returns whether the text of a leaf starts with the column `vein`: then it is for [`read_rays`], not for
 /// [`read_marks`](super::read_marks).
 pub fn is_rays(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
@@ -40,12 +40,12 @@ pub fn is_rays(start: &[u8]) -> bool {
 
 /// Reads chief veins: one line a mark, in any order.
 ///
-/// Veins count from 1 at the right margin, marks from 1 at the base. A vein whose marks have no thickness is none, but
-/// a margin or a notch between lobes. Comments as in [`read_marks`](super::read_marks).
+/// Veins count from 1 at the right margin, marks from 1 at the base. A line of marks without thickness is not a vein,
+/// but a margin or a notch between lobes. Comments as in [`read_marks`](super::read_marks).
 ///
 /// # Errors
-/// [`LeafFileError`] with the line, for missing or repeated marks, veins that are left out, unlike numbers of marks,
-/// numbers that are none, and thickness that is not above 0.
+/// [`LeafFileError`] with the line, for missing or repeated marks, veins that are left out, different numbers of
+/// marks, cells that are not numbers, and thickness that is not above 0.
 pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRays, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let text = super::text(input)?;

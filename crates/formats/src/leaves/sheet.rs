@@ -1,7 +1,8 @@
 //! Workbooks of spreadsheets (`.xlsx`, ECMA-376) -> tables of text.
 //!
-//! Only what a table needs: the cells of one sheet as they were saved. Of the crates that read workbooks, calamine brings
-//! another packer into the whole program (zlib-rs in flate2), by which projects and pictures would get other bytes.
+//! Reads only what a table needs: the cells of one sheet as they were saved. Among the crates that read workbooks,
+//! calamine brings another packer into the whole program (zlib-rs in flate2), which would change the bytes of
+//! projects and pictures.
 
 use std::io::{Cursor, Read};
 
@@ -12,15 +13,15 @@ use super::growth::{date, date_of};
 use super::{LeafFileError, MAX_LEAF_BYTES};
 use crate::error::{FileFault, Place};
 
-/// What is read of a workbook at most.
+/// Most that is read of a workbook.
 struct Limits {
-    /// Files in it.
+    /// Most files in it.
     files: usize,
-    /// Bytes of each, unpacked.
+    /// Most bytes of each file, unpacked.
     bytes: u64,
-    /// Columns of a sheet: as many as spreadsheets have.
+    /// Most columns of a sheet: as many as spreadsheets have.
     columns: usize,
-    /// Cells of a sheet.
+    /// Most cells of a sheet.
     cells: usize,
 }
 
@@ -29,7 +30,8 @@ const LIMITS: Limits = Limits { files: 1_000, bytes: 256 << 20, columns: 16_384,
 /// A table of a workbook.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadSheet {
-    /// Its cells, separated by tabs, a line each row: what [`read_growth`](crate::read_growth) reads. Dates are as 2024-03-05.
+    /// Its cells, separated by tabs, one line for each row, as [`read_growth`](crate::read_growth) reads them. Dates
+    /// are written as 2024-03-05.
     pub text: String,
     /// The name of the sheet.
     pub name: String,
@@ -52,7 +54,7 @@ fn too_much(what: &'static str, limit: u64) -> LeafFileError {
 /// Formulas have the values that were saved with them; cells with errors are empty. Cost: linear.
 ///
 /// # Errors
-/// [`LeafFileError`]: it is no workbook, has no such sheet, or is too large.
+/// [`LeafFileError`]: the file is not a workbook, has no such sheet, or is too large.
 pub fn read_xlsx(input: impl Read, sheet: Option<&str>) -> Result<ReadSheet, LeafFileError> {
     let mut bytes = Vec::new();
     let read = input.take(MAX_LEAF_BYTES + 1).read_to_end(&mut bytes);
@@ -98,12 +100,12 @@ fn parsed(text: &str) -> Result<Document<'_>, LeafFileError> {
         .map_err(|e| damaged(format!("a file in it is no sound XML: {e}")))
 }
 
-/// Names of elements, whatever their prefix.
+/// Returns whether an element has this name, whatever its prefix.
 fn named(node: &Node<'_, '_>, name: &str) -> bool {
     node.is_element() && node.tag_name().name() == name
 }
 
-/// All text below an element, without what shows how letters are pronounced.
+/// Returns all text below an element, except the text that shows how letters are pronounced.
 fn text_below(node: Node<'_, '_>) -> String {
     let texts = node.descendants().filter(|n| named(n, "t") && !n.ancestors().any(|a| named(&a, "rPh")));
     texts.filter_map(|n| n.text()).collect()
@@ -115,7 +117,7 @@ struct Book<'a> {
 }
 
 impl Book<'_> {
-    /// A file as text; none where it is not there.
+    /// Returns a file as text; none if the workbook lacks it.
     fn file(&self, name: &str) -> Result<Option<String>, LeafFileError> {
         let broken = |e: rawzip::Error| damaged(format!("it is no whole workbook (.xlsx): {e}"));
         let archive = ZipArchive::from_slice(self.bytes).map_err(broken)?;
@@ -149,14 +151,14 @@ impl Book<'_> {
         Ok(None)
     }
 
-    /// Texts that cells name by their number.
+    /// Returns the texts to which cells refer by number.
     fn strings(&self) -> Result<Vec<String>, LeafFileError> {
         let Some(text) = self.file("xl/sharedStrings.xml")? else { return Ok(Vec::new()) };
         let document = parsed(&text)?;
         Ok(document.descendants().filter(|n| named(n, "si")).map(text_below).collect())
     }
 
-    /// Of each style of a cell: whether it shows a number as a date.
+    /// Returns for each style of a cell whether it shows a number as a date.
     fn date_styles(&self) -> Result<Vec<bool>, LeafFileError> {
         let Some(text) = self.file("xl/styles.xml")? else { return Ok(Vec::new()) };
         let document = parsed(&text)?;
@@ -175,7 +177,7 @@ impl Book<'_> {
     }
 }
 
-/// Whether a format shows days, months or years: outside of quotes and brackets.
+/// Returns whether a format shows days, months or years: outside of quotes and brackets.
 fn is_date(format: &str) -> bool {
     let (mut quoted, mut bracketed, mut escaped) = (false, false, false);
     format.chars().any(|c| {
@@ -244,14 +246,14 @@ impl Cells {
         }
     }
 
-    /// A date that is counted from the last days of 1899, or from 1904.
+    /// Returns a date that is counted from the last days of 1899, or from 1904.
     fn date(&self, serial: f64) -> String {
         let first = if self.is_1904 { "1904-01-01" } else { "1899-12-30" };
         date_of(date(first).unwrap_or(0.0) + serial.floor())
     }
 }
 
-/// The column of a reference such as `AB12`, from 0.
+/// Returns the column of a reference such as `AB12`, from 0.
 fn column(reference: &str) -> Option<usize> {
     let letters = reference.bytes().take_while(u8::is_ascii_alphabetic).take(4);
     let number = letters.fold(0, |n, c| 26 * n + usize::from(c.to_ascii_uppercase() - b'A') + 1);

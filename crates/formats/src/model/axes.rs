@@ -1,4 +1,4 @@
-//! Units and up axes at the border: inside everything is metres, +Y up.
+//! Units and up axes of files: inside, everything is in metres, +Y up.
 
 use base::{Unit, UpAxis};
 use glam::DVec3;
@@ -13,29 +13,30 @@ use mesh::Model;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExportSpec {
-    /// Default +Y.
+    /// The up axis; the default is +Y.
     pub up: UpAxis,
-    /// Default metres.
+    /// The unit of length; the default is metres.
     pub unit: Unit,
 }
 
 impl ExportSpec {
-    /// Metres, +Y up.
+    /// Returns whether the file is in metres, +Y up.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
 
-    /// A model's position as the file has it.
+    /// Converts a model's position to the unit and axes of the file.
     pub fn point(&self, p: [f32; 3]) -> [f32; 3] {
         let per_metre = match self.unit {
             Unit::Metre => return self.direction(p),
             Unit::Centimetre => 100.0,
             Unit::Millimetre => 1000.0,
+            Unit::Foot => 1.0 / 0.3048,
         };
         self.direction(p).map(|x| x * per_metre)
     }
 
-    /// A model's direction as the file has it.
+    /// Converts a model's direction to the axes of the file.
     pub fn direction(&self, n: [f32; 3]) -> [f32; 3] {
         match self.up {
             UpAxis::Y => n,
@@ -43,7 +44,7 @@ impl ExportSpec {
         }
     }
 
-    /// A point as the file has it in metres, +Y up.
+    /// Converts a point of the file to metres, +Y up.
     ///
     /// ```
     /// use base::{Unit, UpAxis};
@@ -52,17 +53,18 @@ impl ExportSpec {
     /// ```
     pub fn inward(&self, p: DVec3) -> DVec3 {
         let turned = if self.up == UpAxis::Z { DVec3::new(p.x, p.z, -p.y) } else { p };
-        // Not times 1: a sign of zero would change.
+        // No factor of 1: it would change the sign of a zero.
         if self.unit == Unit::Metre { turned } else { turned * self.unit.metres() }
     }
 
-    /// A place or offset in metres, +Y up, as the file has it.
+    /// Converts a place or offset in metres, +Y up, to the unit and axes of the file.
     pub fn place(&self, p: DVec3) -> [f64; 3] {
         let p = if self.up == UpAxis::Z { DVec3::new(p.x, -p.z, p.y) } else { p };
         (p * (1.0 / self.unit.metres())).to_array()
     }
 
-    /// A line on what was taken off all positions, in the unit and axes of the file; empty where nothing was.
+    /// Returns a line on the offset that was subtracted from all positions, in the unit and axes of the file; empty
+    /// if there was none.
     pub(crate) fn offset_line(&self, offset_m: Option<DVec3>, mark: &str) -> String {
         offset_m.map_or(String::new(), |o| {
             let [x, y, z] = self.place(o);
@@ -70,7 +72,7 @@ impl ExportSpec {
         })
     }
 
-    /// Turns what was read into metres, +Y up.
+    /// Converts a model that was read to metres, +Y up.
     pub(crate) fn import(&self, model: &mut Model) {
         if self.is_default() {
             return;

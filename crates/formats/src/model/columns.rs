@@ -8,13 +8,13 @@ use super::meshopt_filter::{EXPONENTIAL, QUATERNION, exponential, power_within, 
 pub(crate) struct CompressedColumn {
     /// The bytes.
     pub(crate) stream: Vec<u8>,
-    /// Bytes of a row that comes back.
+    /// Bytes of a row after decompression.
     pub(crate) stride: usize,
-    /// How a row is stored, by the word of the extension.
+    /// The filter of the rows, by its name in the extension.
     pub(crate) filter: Option<&'static str>,
 }
 
-/// Rows of so many floats, to half of a step, which is above 0.
+/// Compresses rows of `width` floats, to half of `step`, which is above 0.
 pub(crate) fn compressed_floats(numbers: &[f64], width: usize, step: f64) -> CompressedColumn {
     let power = power_within(step);
     let bytes: Vec<u8> = numbers.iter().flat_map(|&x| exponential(x, power)).collect();
@@ -22,7 +22,7 @@ pub(crate) fn compressed_floats(numbers: &[f64], width: usize, step: f64) -> Com
     CompressedColumn { stream: encode_attributes(&bytes, stride), stride, filter: Some(EXPONENTIAL) }
 }
 
-/// Turns, to two thirds of a degree.
+/// Compresses rotations, to two thirds of a degree.
 pub(crate) fn compressed_turns(turns: &[[f64; 4]]) -> CompressedColumn {
     let bytes: Vec<u8> = turns.iter().flat_map(|&q| quaternion(q)).collect();
     CompressedColumn { stream: encode_attributes(&bytes, 8), stride: 8, filter: Some(QUATERNION) }

@@ -13,7 +13,7 @@ use super::{MAX_ROWS, Names, Resolver, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
-/// Largest JSON part.
+/// Most bytes of the JSON part.
 const MAX_JSON: usize = 256 << 20;
 /// Most objects and arrays in it: each costs far more memory than its two bytes.
 const MAX_OBJECTS: usize = 2_000_000;
@@ -50,7 +50,7 @@ pub(super) fn read(
     if json.iter().filter(|b| matches!(b, b'{' | b'[')).count() > MAX_OBJECTS {
         return Err(too_much("the number of objects", MAX_OBJECTS));
     }
-    // As text, as all JSON is read here: a reader of bytes would be a second copy of all that reads.
+    // The JSON is parsed as text, like all JSON here: a reader of bytes would add a second copy of the parsing code.
     let json = core::str::from_utf8(json)
         .map_err(|e| file(FileFault::malformed(format!("the JSON part: {e}"), "export the model again")))?;
     let root: Root = serde_json::from_str(json).map_err(|e| {
@@ -107,7 +107,7 @@ struct Reader<'a> {
     skipped: usize,
 }
 
-/// Where an instance stands, and by what its colour is multiplied.
+/// Place of an instance, and the factor of its colour.
 type Instance = (DMat4, [f32; 3]);
 
 fn local_matrix(node: &Node) -> DMat4 {
@@ -115,7 +115,7 @@ fn local_matrix(node: &Node) -> DMat4 {
         Some(m) => DMat4::from_cols_array(&m),
         None => DMat4::from_scale_rotation_translation(
             node.scale.map_or(DVec3::ONE, DVec3::from),
-            // A quaternion of no length turns nothing.
+            // A quaternion of length zero is no rotation.
             node.rotation
                 .map(DQuat::from_array)
                 .filter(|q| q.length_squared() > 0.0)
@@ -135,7 +135,7 @@ impl Reader<'_> {
                 *flag = true;
             }
         }
-        // A file without scenes is a library; take what stands at the top.
+        // A file without scenes is a library; all nodes without a parent are read.
         let tops: Vec<u32> = match scene {
             Some(scene) => scene.nodes.clone(),
             None => (0_u32..).zip(&has_parent).filter(|(_, h)| !**h).map(|(i, _)| i).collect(),
@@ -181,8 +181,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Where the instances of a node's mesh stand (`EXT_mesh_gpu_instancing`), and their colours; `None` of a node that has
-    /// none.
+    /// Returns the places and colours of the instances of a node's mesh (`EXT_mesh_gpu_instancing`); `None` if the
+    /// node has none.
     fn places(&self, node: &Node, index: u32) -> Result<Option<Vec<Instance>>, MeshFault> {
         let Some(instances) = node.extensions.as_ref().and_then(|e| e.get(INSTANCES)) else {
             return Ok(None);
@@ -206,7 +206,7 @@ impl Reader<'_> {
         let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
         let one = |k: usize| {
             let turn = turn.as_ref().map_or(DQuat::IDENTITY, |t| DQuat::from_array(t[k].map(f64::from)));
-            // A quaternion of no length turns nothing.
+            // A quaternion of length zero is no rotation.
             let turn = if turn.length_squared() > 0.0 { turn.normalize() } else { DQuat::IDENTITY };
             let scale = scale.as_ref().map_or(DVec3::ONE, |s| wide(s[k]));
             let at = at.as_ref().map_or(DVec3::ZERO, |t| wide(t[k]));
@@ -216,7 +216,7 @@ impl Reader<'_> {
         Ok(Some((0..count).map(one).collect()))
     }
 
-    /// Copies of a mesh in these places as one mesh.
+    /// Returns the copies of a mesh in these places as one mesh.
     fn copied(&mut self, mesh: &TriMesh, places: &[Instance], place: &Place) -> Result<TriMesh, MeshFault> {
         let each = mesh.positions.len().saturating_add(mesh.triangles.len());
         self.rows = self.rows.saturating_add(each.saturating_mul(places.len()));
@@ -294,7 +294,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The columns of a primitive; `None` for lines.
+    /// Returns the columns of a primitive; `None` for lines.
     fn primitive(&mut self, p: &Primitive, place: &Place) -> Result<Option<TriMesh>, MeshFault> {
         let mode = p.mode.unwrap_or(TRIANGLES);
         if !matches!(mode, POINTS | TRIANGLES | STRIP | FAN) {
@@ -356,7 +356,8 @@ impl Reader<'_> {
         Ok(Some(mesh))
     }
 
-    /// How wind moves the mesh. Other programs may mean something else by these names: what is not ours is left out.
+    /// Reads how wind moves the mesh. Other programs may use these names for something else: columns of another form
+    /// are left out.
     fn wind(&mut self, p: &Primitive, count: usize, mesh: &mut TriMesh) {
         let (root, bytes) = (self.root, &self.bytes);
         if let Some(i) = p.attributes.wind {
@@ -377,7 +378,8 @@ impl Reader<'_> {
     }
 }
 
-/// Moves texture coordinates as the material's colour texture is moved (`KHR_texture_transform`, without its turn).
+/// Moves texture coordinates by the transform of the material's colour texture (`KHR_texture_transform`, without its
+/// rotation).
 fn place_texture(mesh: &mut TriMesh, material: &Material) {
     let info = material.pbr_metallic_roughness.base_color_texture.as_ref();
     let Some(transform) =
@@ -394,7 +396,7 @@ fn place_texture(mesh: &mut TriMesh, material: &Material) {
     mesh.uvs.iter_mut().for_each(|uv| *uv = [0, 1].map(|k| offset[k] + scale[k] * uv[k]));
 }
 
-/// Places a mesh in the world; a mirrored one is turned so that its triangles face outside again.
+/// Places a mesh in the world; a mirrored one is reversed so that its triangles face outside again.
 fn apply(mesh: &mut TriMesh, world: DMat4) {
     if world == DMat4::IDENTITY {
         return;

@@ -19,9 +19,10 @@ pub(super) const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 const LINEAR: u32 = 9_729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9_987;
 
-/// Writes a model as a GLB: one root node named after the model, one node and mesh a part, materials with
-/// embedded PNG textures (each once), `alphaMode` MASK and `doubleSided` where the material says so. How wind moves
-/// the vertices is written as attributes `_WIND` (VEC4) and `_PIVOT` (VEC4: metres, and 1), where the model has it.
+/// Writes a model as a GLB: one root node named after the model, one node and mesh for each part, materials with
+/// embedded PNG textures (each once), `alphaMode` MASK and `doubleSided` if the material asks for it. The wind's
+/// effect on the vertices is written as attributes `_WIND` (VEC4) and `_PIVOT` (VEC4: metres, and 1), if the model
+/// has it.
 ///
 /// Guaranteed: the same model gives the same bytes; the Khronos validator finds no error, and warns of
 /// nothing but tangents, which viewers compute for normal maps.
@@ -40,7 +41,7 @@ pub fn write_glb(model: &Model, out: impl Write) -> Result<(), WriteError> {
     write_glb_with(model, &mut PngCache::new(), out)
 }
 
-/// [`write_glb`] with encoded textures kept for the next time.
+/// Writes as [`write_glb`] does and keeps the encoded textures for the next time.
 ///
 /// # Errors
 /// As [`write_glb`].
@@ -53,22 +54,23 @@ pub fn write_glb_with(model: &Model, cache: &mut PngCache, out: impl Write) -> R
 pub struct Morph<'a> {
     /// Name of the animation.
     pub name: &'a str,
-    /// Second at which the model itself is seen; keys may lie before and after it.
+    /// Second at which the model itself appears; keys may lie before and after it.
     pub at: f32,
-    /// Seconds, increasing, none of them `at`, and the model at each: the same parts with as many vertices.
+    /// Seconds, increasing and different from `at`, and the model at each: the same parts with as many vertices.
     pub keys: Vec<(f32, &'a Model)>,
 }
 
-/// [`write_glb`] with an animation that leads through the keys of `morph`, linear between them.
+/// Writes as [`write_glb`] does, with an animation through the keys of `morph`, linear between them.
 ///
-/// Wind, where the first shape has it, is that shape's: keys do not change it.
+/// Wind, if the first shape has it, is that of the first shape: keys do not change it.
 ///
-/// Each key is a morph target (position, normal, and colour where vertex colours change) of every part; viewers blend
-/// two at a time. Players that know no morph targets show the model itself, and those that know none of colours (such
-/// as Blender) keep its colours: let it be the shape that is best to look at.
+/// Each key is a morph target (position, normal, and colour if vertex colours change) of every part; viewers blend
+/// two at a time. Players without morph targets show the model itself, and players without targets of colours (such
+/// as Blender) keep its colours: choose the best-looking shape for it.
 ///
 /// # Errors
-/// As [`write_glb`]; [`WriteError::Keys`] if a key has other parts or vertices, or times do not increase or one is that of the model itself.
+/// As [`write_glb`]; [`WriteError::Keys`] if a key has other parts or vertices, or times do not increase or one is
+/// that of the model itself.
 pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Result<(), WriteError> {
     let mut before = f32::NEG_INFINITY;
     for (index, (time, key)) in morph.keys.iter().enumerate() {
@@ -87,9 +89,10 @@ pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Res
     write(model, morph, &mut PngCache::new(), out)
 }
 
-/// Writes a scene as a GLB: one root node of this name, under it a node a plant that says where it stands, under that a
-/// node a part. A model that stands in several places is written once, and all of its places name its meshes; so do equal
-/// textures. The parts of a model that stands alone where it was made are those of the root, as in [`write_glb`].
+/// Writes a scene as a GLB: one root node of this name, below it a node with the place of each plant, and below that
+/// a node for each part. A model with several places is written once, and all of its places refer to its meshes; so
+/// are equal textures. If there is only one plant, at its original place, its parts are children of the root, as in
+/// [`write_glb`].
 ///
 /// Guaranteed: as [`write_glb`]. `_PIVOT` is in the coordinates of the plant's own node.
 ///
@@ -130,22 +133,23 @@ pub fn write_glb_scene(
 pub struct Level<'a> {
     /// Its parts.
     pub model: &'a Model,
-    /// Meshes that stand in many places, in materials of the model; they are no parts of it.
+    /// Meshes with many places, in materials of the model; they are not among its parts.
     pub copies: &'a [Copies],
 }
 
 impl<'a> Level<'a> {
-    /// A model whose parts are all there is.
+    /// Returns a level with the parts of a model and without copies.
     pub const fn plain(model: &'a Model) -> Self {
         Self { model, copies: &[] }
     }
 }
 
-/// Writes a model with joints and their looping animation: as [`write_glb`], each vertex held by its joints, and the parts
-/// at the top of the scene, where glTF wants what joints move. Attributes for wind are left out: joints do what they ask for.
+/// Writes a model with joints and their looping animation: as [`write_glb`], with each vertex bound to its joints,
+/// and the parts at the top of the scene, where glTF wants skinned meshes. Attributes for wind are left out: joints
+/// do the same.
 ///
 /// # Errors
-/// As [`write_glb`]; [`WriteError::Rig`] where the rig does not fit the model.
+/// As [`write_glb`]; [`WriteError::Rig`] if the rig does not fit the model.
 pub fn write_glb_rigged(
     model: &Model,
     rig: &Rig,
@@ -208,7 +212,7 @@ pub(super) fn write_all(
     w.finish(out)
 }
 
-/// Refuses levels that no file should be made of.
+/// Refuses levels that no file should hold.
 pub(super) fn check_levels(levels: &[Level<'_>]) -> Result<(), WriteError> {
     for level in levels {
         check(level.model)?;
@@ -228,23 +232,29 @@ pub(super) fn check_levels(levels: &[Level<'_>]) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// Meshes in many places.
+/// The extension for meshes with many places.
 pub(super) const INSTANCES: &str = "EXT_mesh_gpu_instancing";
+/// The extension for levels of detail.
 const LEVELS: &str = "MSFT_lod";
 
 fn room(model: &Model) -> usize {
     48 * model.vertex_count() + 12 * model.triangle_count() + 1024
 }
 
-/// A row of `_PIVOT`, a point with the fourth coordinate 1. It is as wide as `_WIND`, because Blender's importer takes the
-/// columns of an application's own attributes in an order that changes with each start, and fails on some orders of columns
-/// of two widths.
+/// Returns a row of `_PIVOT`: a point with the fourth coordinate 1. It is as wide as `_WIND`, because Blender's
+/// importer takes the columns of an application's own attributes in an order that changes with each start, and fails
+/// on some orders of columns of two widths.
 pub(super) fn pivot_row([x, y, z]: [f32; 3]) -> [f32; 4] {
     [x, y, z, 1.0]
 }
 
 pub(super) fn row(n: usize) -> Result<u32, WriteError> {
     u32::try_from(n).ok().ok_or(WriteError::TooLarge { what: "the number of parts", format: "glTF" })
+}
+
+/// Indices of so many vertices fit into sixteen bits; 65535 itself is the primitive restart value and may not be an index.
+pub(super) const fn has_small_indices(vertices: usize) -> bool {
+    vertices < 65_536
 }
 
 /// A document and its bytes as a GLB.
@@ -276,7 +286,7 @@ pub(crate) fn write_container(
     Ok(())
 }
 
-/// The accessors of instances.
+/// Accessors of instances.
 pub(super) struct InstanceColumns {
     pub(super) translation: u32,
     pub(super) rotation: u32,
@@ -284,18 +294,26 @@ pub(super) struct InstanceColumns {
     pub(super) color: u32,
 }
 
+/// Columns of the wind as attributes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Winds {
+    /// `_WIND` and `_PIVOT`.
+    Own,
+    None,
+}
+
 pub(super) struct Writer {
     pub(super) root: Root,
     pub(super) bin: Vec<u8>,
     /// The texture of each image.
     pub(super) images: Vec<Arc<mesh::Texture>>,
-    /// How they are encoded.
+    /// Encoder of the textures.
     pub(super) encode: fn(&Arc<mesh::Texture>, &mut PngCache) -> Result<Encoded, WriteError>,
-    /// Of each material, how its textures are placed: an extension; empty for as they are.
+    /// Transform of the textures of each material, as an extension; empty if there is none.
     pub(super) placed: Vec<Option<Value>>,
 }
 
-/// An image's bytes and their type.
+/// Bytes of an image and their type.
 pub(super) type Encoded = (Arc<[u8]>, &'static str);
 
 impl Writer {
@@ -327,7 +345,7 @@ impl Writer {
         write_container(text, &self.bin, out)
     }
 
-    /// Makes a buffer view of what `fill` appends.
+    /// Adds a buffer view of the bytes that `fill` appends.
     pub(super) fn view(
         &mut self,
         target: Option<u32>,
@@ -342,7 +360,7 @@ impl Writer {
         row(self.root.buffer_views.len() - 1)
     }
 
-    fn column<const N: usize>(
+    pub(super) fn column<const N: usize>(
         &mut self,
         shape: &str,
         rows: &[[f32; N]],
@@ -366,18 +384,22 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    pub(super) fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
-        // 65535 itself is the primitive restart value and may not be an index.
-        let small = mesh.positions.len() < 65_536;
-        let view = self.view(Some(ELEMENT_ARRAY_BUFFER), |bin| {
-            let indices = mesh.triangles.iter().flatten();
-            if small {
+    /// A view of triangles.
+    pub(super) fn triangles(&mut self, triangles: &[[u32; 3]], is_small: bool) -> Result<u32, WriteError> {
+        self.view(Some(ELEMENT_ARRAY_BUFFER), |bin| {
+            let indices = triangles.iter().flatten();
+            if is_small {
                 #[expect(clippy::cast_possible_truncation, reason = "below 65535: checked with the model")]
                 bin.extend(indices.flat_map(|&i| (i as u16).to_le_bytes()));
             } else {
                 bin.extend(indices.flat_map(|&i| i.to_le_bytes()));
             }
-        })?;
+        })
+    }
+
+    pub(super) fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
+        let small = has_small_indices(mesh.positions.len());
+        let view = self.triangles(&mesh.triangles, small)?;
         self.root.accessors.push(Accessor {
             buffer_view: Some(view),
             component_type: if small { U16 } else { U32 },
@@ -388,14 +410,14 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    /// Names an extension that the file has, once.
+    /// Adds an extension to those that the file uses, once.
     pub(super) fn uses(&mut self, extension: &str) {
         if !self.root.extensions_used.iter().any(|e| e == extension) {
             self.root.extensions_used.push(extension.to_owned());
         }
     }
 
-    /// Names an extension that a reader must know, once.
+    /// Adds an extension to those that a reader must know, once.
     pub(super) fn needs(&mut self, extension: &str) {
         self.uses(extension);
         if !self.root.extensions_required.iter().any(|e| e == extension) {
@@ -403,7 +425,7 @@ impl Writer {
         }
     }
 
-    /// What a key adds to positions, normals and, if `colored`, to vertex colours.
+    /// Returns the differences of a key in positions, normals and, if `colored`, vertex colours.
     fn target(&mut self, mesh: &TriMesh, key: &TriMesh, colored: bool) -> Result<Attributes, WriteError> {
         let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let moved: Vec<[f32; 3]> =
@@ -423,7 +445,8 @@ impl Writer {
         Ok(target)
     }
 
-    /// One channel a part, all with the same keys: of all weights only that of the key is 1, at the model itself none.
+    /// Adds one channel for each part, all with the same keys: at a key only its own weight is 1, at the model itself
+    /// none.
     fn animation(&mut self, model: &Model, morph: &Morph<'_>) -> Result<(), WriteError> {
         let n = morph.keys.len();
         if n == 0 || self.root.meshes.is_empty() {
@@ -464,7 +487,7 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    /// The node under which all others are, and the scene that shows it.
+    /// Adds the node above all others, and the scene that shows it.
     pub(super) fn root(&mut self, name: &str) {
         let name = if name.is_empty() { "model" } else { name };
         self.root.nodes.push(Node { name: Some(name.to_owned()), ..Node::default() });
@@ -472,7 +495,7 @@ impl Writer {
         self.root.scene = Some(0);
     }
 
-    /// Lets the mesh of the last node stand in many places.
+    /// Places the mesh of the last node as instances.
     pub(super) fn stand(&mut self, places: &[CopyPlace]) -> Result<(), WriteError> {
         #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in files, by design")]
         let narrow = |x: f64| x as f32;
@@ -490,7 +513,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Makes the last node stand in many places, by accessors with a row for each.
+    /// Makes instances of the last node, by accessors with a row for each.
     pub(super) fn instances(&mut self, columns: &InstanceColumns) {
         let attributes = json!({
             "TRANSLATION": columns.translation,
@@ -504,7 +527,7 @@ impl Writer {
         }
     }
 
-    /// The node of a level: the root for number 0, which must come first; else one of its own.
+    /// Returns the node of a level: the root for number 0, which must come first; else a new one.
     pub(super) fn level(&mut self, name: &str, number: u32) -> Result<u32, WriteError> {
         if number == 0 {
             self.root(name);
@@ -519,13 +542,13 @@ impl Writer {
         if let Some(ids) = ids[LEVELS]["ids"].as_array_mut() {
             ids.push(json!(at));
         }
-        // Half of the picture's height and half of that again; of the last level there is no end.
+        // Half of the picture's height, half of that and so on; the last level has no lower bound.
         let ends = (1..=number).map(|k| 1.0 / f64::from(1_u32 << k.min(30))).chain([0.0]);
         root.extras = Some(json!({ "MSFT_screencoverage": ends.collect::<Vec<f64>>() }));
         Ok(at)
     }
 
-    /// A node under the root that stands where the plant does.
+    /// Adds a node under the root with the place of the plant.
     fn place(&mut self, plant: &Standing<'_>) -> Result<u32, WriteError> {
         let moved = plant.position != DVec3::ZERO;
         let turned = plant.turn != DQuat::IDENTITY;
@@ -542,7 +565,7 @@ impl Writer {
         Ok(at)
     }
 
-    /// A node a mesh, under a node.
+    /// Adds a node for each mesh, under a node.
     fn hang(&mut self, under: u32, meshes: &[u32]) -> Result<(), WriteError> {
         for &mesh in meshes {
             let name = self.root.meshes[mesh as usize].name.clone();
@@ -553,7 +576,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Joints below the root, meshes beside it, and what moves the joints.
+    /// Adds joints below the root, meshes next to it, and the animation of the joints.
     fn rig(&mut self, model: &Model, rig: &Rig, meshes: &[u32]) -> Result<(), WriteError> {
         let first = row(self.root.nodes.len())?;
         for joint in &rig.joints {
@@ -579,7 +602,7 @@ impl Writer {
         let parts = rig.holds.iter().zip(&model.parts).filter(|(_, p)| !p.mesh.positions.is_empty());
         for (&mesh, (holds, _)) in meshes.iter().zip(parts) {
             let view = self.view(Some(ARRAY_BUFFER), |bin| {
-                // Of a joint without a share the row is 0, as glTF asks.
+                // A joint without a share has the row 0, as glTF asks.
                 let rows = holds
                     .iter()
                     .flat_map(|h| [0, 1, 2, 3].map(|k| if h.shares[k] > 0.0 { h.joints[k] } else { 0 }));
@@ -631,7 +654,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Rows of floats that are no column of vertices.
+    /// Adds rows of floats that are not a column of vertices.
     fn rows<const N: usize>(
         &mut self,
         shape: &str,
@@ -650,12 +673,39 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    /// The meshes of a model, by their rows; `first` is the row of its first material.
+    /// Adds the columns of a mesh.
+    pub(super) fn attributes(&mut self, mesh: &TriMesh, winds: Winds) -> Result<Attributes, WriteError> {
+        let mut attributes =
+            Attributes { position: Some(self.column("VEC3", &mesh.positions, true)?), ..Default::default() };
+        if !mesh.normals.is_empty() {
+            let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| unit(n)).collect();
+            attributes.normal = Some(self.column("VEC3", &normals, false)?);
+        }
+        if !mesh.uvs.is_empty() {
+            let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
+            let uvs: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| uv.map(finite)).collect();
+            attributes.uv = Some(self.column("VEC2", &uvs, false)?);
+        }
+        if !mesh.colors.is_empty() {
+            let colors: Vec<[f32; 3]> = mesh.colors.iter().map(|c| c.map(share)).collect();
+            attributes.color = Some(self.column("VEC3", &colors, false)?);
+        }
+        if winds == Winds::Own && !mesh.wind.is_empty() {
+            attributes.wind = Some(self.column("VEC4", &mesh.wind, false)?);
+        }
+        if winds == Winds::Own && !mesh.pivots.is_empty() {
+            let pivots: Vec<[f32; 4]> = mesh.pivots.iter().map(|&p| pivot_row(p)).collect();
+            attributes.pivot = Some(self.column("VEC4", &pivots, false)?);
+        }
+        Ok(attributes)
+    }
+
+    /// Returns the rows of a model's meshes, which it adds; `first` is the row of its first material.
     fn meshes(&mut self, model: &Model, first: u32, morph: &Morph<'_>) -> Result<Vec<u32>, WriteError> {
         self.meshes_of(model, first, morph, true)
     }
 
-    /// The same, with or without what moves vertices in the wind.
+    /// Does the same, with or without the wind columns.
     fn meshes_of(
         &mut self,
         model: &Model,
@@ -666,30 +716,7 @@ impl Writer {
         let mut meshes = Vec::new();
         for (index, part) in model.parts.iter().enumerate().filter(|(_, p)| !p.mesh.positions.is_empty()) {
             let mesh = &part.mesh;
-            let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| unit(n)).collect();
-            let mut attributes = Attributes {
-                position: Some(self.column("VEC3", &mesh.positions, true)?),
-                ..Default::default()
-            };
-            if !normals.is_empty() {
-                attributes.normal = Some(self.column("VEC3", &normals, false)?);
-            }
-            if !mesh.uvs.is_empty() {
-                let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
-                let uvs: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| uv.map(finite)).collect();
-                attributes.uv = Some(self.column("VEC2", &uvs, false)?);
-            }
-            if !mesh.colors.is_empty() {
-                let colors: Vec<[f32; 3]> = mesh.colors.iter().map(|c| c.map(share)).collect();
-                attributes.color = Some(self.column("VEC3", &colors, false)?);
-            }
-            if wind && !mesh.wind.is_empty() {
-                attributes.wind = Some(self.column("VEC4", &mesh.wind, false)?);
-            }
-            if wind && !mesh.pivots.is_empty() {
-                let pivots: Vec<[f32; 4]> = mesh.pivots.iter().map(|&p| pivot_row(p)).collect();
-                attributes.pivot = Some(self.column("VEC4", &pivots, false)?);
-            }
+            let attributes = self.attributes(mesh, if wind { Winds::Own } else { Winds::None })?;
             let points = mesh.triangles.is_empty();
             let mut targets = Vec::with_capacity(morph.keys.len());
             // All targets of a primitive have the same attributes.

@@ -1,7 +1,7 @@
-//! The part of glTF 2.0 that we read and write, as plain data.
+//! The part of glTF 2.0 that Burgeon reads and writes, as plain data.
 //!
-//! Our own structs and not a crate: the same ones read and write, every index is checked by us (hostile files
-//! reach this code), and extensions stay open.
+//! Own structs, not a crate: the same ones read and write, this crate checks every index (the files may be hostile),
+//! and extensions stay open.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -66,7 +66,7 @@ schema! {
         buffers: Vec<Buffer>,
         #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
         skins: Vec<Skin>,
-        // Written, never read: an animation that we do not know must not make a model unreadable.
+        // Written, never read: an unknown animation must not make a model unreadable.
         #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
         animations: Vec<Animation>,
     }
@@ -155,9 +155,19 @@ schema! {
         normal: Option<u32>,
         #[serde(rename = "TEXCOORD_0", skip_serializing_if = "Option::is_none")]
         uv: Option<u32>,
+        #[serde(rename = "TEXCOORD_1", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        uv1: Option<u32>,
+        #[serde(rename = "TEXCOORD_2", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        uv2: Option<u32>,
+        #[serde(rename = "TEXCOORD_3", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        uv3: Option<u32>,
+        #[serde(rename = "TEXCOORD_4", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        uv4: Option<u32>,
+        #[serde(rename = "TEXCOORD_5", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        uv5: Option<u32>,
         #[serde(rename = "COLOR_0", skip_serializing_if = "Option::is_none")]
         color: Option<u32>,
-        // Names of an application's own begin with an underscore.
+        // Names of an application's own attributes begin with an underscore.
         #[serde(rename = "_WIND", skip_serializing_if = "Option::is_none")]
         wind: Option<u32>,
         #[serde(rename = "_PIVOT", skip_serializing_if = "Option::is_none")]

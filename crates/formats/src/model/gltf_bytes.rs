@@ -28,7 +28,7 @@ pub(super) fn unsupported(place: Place, what: impl Into<String>) -> MeshFault {
     (place, FileFault::unsupported(what, EXPORT_AGAIN))
 }
 
-/// The JSON text and the binary chunk.
+/// Returns the JSON text and the binary chunk.
 pub(super) fn chunks(bytes: &[u8], format: ModelFormat) -> Result<(&[u8], Option<&[u8]>), ModelError> {
     if !bytes.starts_with(b"glTF") {
         if bytes.trim_ascii_start().starts_with(b"{") || format == ModelFormat::Gltf {
@@ -69,12 +69,12 @@ pub(super) fn chunks(bytes: &[u8], format: ModelFormat) -> Result<(&[u8], Option
     json.map(|json| (json, bin)).ok_or_else(|| cut(12, "the JSON chunk"))
 }
 
-/// What is in a buffer.
+/// Contents of a buffer.
 #[derive(Debug)]
 enum Held<'a> {
-    /// A part of the document.
+    /// A part of the document itself.
     Inside(&'a [u8]),
-    /// A file or a URI's data; buffers that name one file share it.
+    /// The data of a file or a URI; buffers that name one file share it.
     Own(Arc<Vec<u8>>),
 }
 
@@ -93,11 +93,11 @@ impl core::ops::Deref for Held<'_> {
 #[derive(Debug)]
 pub(super) struct Bytes<'a> {
     buffers: Vec<Held<'a>>,
-    /// What each compressed view holds; none of others.
+    /// Contents of each compressed view; none for the others.
     unpacked: Vec<Option<Vec<u8>>>,
 }
 
-/// Bytes that compressed views may hold together.
+/// Most bytes of all compressed views together.
 const MAX_UNPACKED: u64 = 1 << 30;
 
 impl<'a> Bytes<'a> {
@@ -105,7 +105,7 @@ impl<'a> Bytes<'a> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
         let mut read: LiteMap<&str, Arc<Vec<u8>>> = LiteMap::new();
         for (i, buffer) in root.buffers.iter().enumerate() {
-            // A buffer for readers without the extension has nothing that its compressed views would need.
+            // A fallback buffer, for readers without the extension, holds nothing that its compressed views need.
             let marked =
                 buffer.extensions.as_ref().and_then(|e| e.get(COMPRESSION)?.get("fallback")?.as_bool());
             if marked == Some(true) && buffer.uri.is_none() {
@@ -140,7 +140,7 @@ impl<'a> Bytes<'a> {
         Ok(bytes)
     }
 
-    /// What a compressed view holds; none of one that is not compressed.
+    /// Returns the contents of a compressed view; none for a view that is not compressed.
     fn unpack(&self, index: usize, view: &View, room: &mut u64) -> Result<Option<Vec<u8>>, MeshFault> {
         let Some(packed) = view.extensions.as_ref().and_then(|e| e.get(COMPRESSION)) else { return Ok(None) };
         let place = || item("bufferView", index);
@@ -157,7 +157,7 @@ impl<'a> Bytes<'a> {
         let stream = stream.ok_or_else(|| broken(place(), "its stream reaches beyond its buffer"))?;
         let whole = (count as u64).checked_mul(stride as u64).filter(|&whole| whole <= *room);
         *room -= whole.ok_or_else(|| broken(place(), "it would hold too much"))?;
-        let known = Filter::of(&filter);
+        let known = Filter::from_word(&filter);
         if filter != "NONE" && (known.is_none() || mode != "ATTRIBUTES") {
             return Err(unsupported(
                 place(),
@@ -178,7 +178,7 @@ impl<'a> Bytes<'a> {
         held.map(Some).ok_or_else(|| broken(place(), "its compressed data is broken"))
     }
 
-    /// The bytes of a buffer view, and its stride.
+    /// Returns the bytes of a buffer view, and its stride.
     pub(super) fn view(&self, root: &Root, index: u32) -> Result<(&[u8], Option<u64>), MeshFault> {
         let place = || item("bufferView", index);
         let view = root.buffer_views.get(index as usize).ok_or_else(|| broken(place(), "it is not there"))?;
@@ -200,7 +200,7 @@ impl<'a> Bytes<'a> {
         root.accessors.get(index as usize).ok_or_else(|| broken(item("accessor", index), "it is not there"))
     }
 
-    /// Number of rows of an accessor, before anything is read.
+    /// Returns the number of rows of an accessor, before anything is read.
     pub(super) fn count(&self, root: &Root, index: u32) -> Result<usize, MeshFault> {
         usize::try_from(self.accessor(root, index)?.count)
             .map_err(|e| broken(item("accessor", index), format!("its count is absurd: {e}")))
@@ -244,8 +244,8 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// An accessor as rows of `N` floats; integers are scaled if the accessor says `normalized`.
-    /// A `VEC4` may be read as three: its alpha is dropped.
+    /// Returns an accessor as rows of `N` floats; integers are scaled if the accessor says `normalized`. A `VEC4` may
+    /// be read as three: its alpha is dropped.
     pub(super) fn floats<const N: usize>(&self, root: &Root, index: u32) -> Result<Vec<[f32; N]>, MeshFault> {
         let accessor = self.accessor(root, index)?;
         let components =
@@ -265,7 +265,7 @@ impl<'a> Bytes<'a> {
         Ok(out)
     }
 
-    /// An accessor as indices.
+    /// Returns an accessor as indices.
     pub(super) fn indices(&self, root: &Root, index: u32) -> Result<Vec<u32>, MeshFault> {
         let accessor = self.accessor(root, index)?;
         if accessor.shape != "SCALAR" || !matches!(accessor.component_type, U8 | U16 | U32) {
@@ -308,7 +308,7 @@ fn number(raw: &[u8], kind: u32, scaled: bool) -> f32 {
     if scaled { (value / most).max(-1.0) } else { value }
 }
 
-/// The bytes that a `data:` URI or a file holds; none of a file that is not there.
+/// Returns the bytes of a `data:` URI or of a file; none if the file is missing.
 pub(super) fn load_uri(
     uri: &str,
     files: &mut Files<'_>,

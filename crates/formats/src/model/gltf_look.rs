@@ -1,4 +1,4 @@
-//! Materials and their textures, to glTF and back.
+//! Materials and their textures: Burgeon <-> glTF.
 
 use std::sync::Arc;
 
@@ -14,13 +14,13 @@ use super::picture::{WEBP_TYPE, read_webp};
 use super::{Names, PngCache, kind_of, read_picture, share};
 use crate::error::{FileFault, WriteError};
 
-/// Light that comes through a thin blade, as viewers know it that have the extension; to others it is opaque.
+/// The extension for light through a thin blade; viewers without it show the blade as opaque.
 const TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
-/// Textures whose image is WebP.
+/// The extension for textures as WebP.
 pub(super) const WEBP: &str = "EXT_texture_webp";
 
 impl Writer {
-    /// The row of the model's first material.
+    /// Adds the model's materials and returns the row of the first.
     pub(super) fn materials(&mut self, model: &Model, cache: &mut PngCache) -> Result<u32, WriteError> {
         let first = row(self.root.materials.len())?;
         for (k, material) in model.materials.iter().enumerate() {
@@ -39,7 +39,7 @@ impl Writer {
                 pbr_metallic_roughness: Pbr {
                     base_color_factor: Some([r, g, b, 1.0]),
                     base_color_texture: texture,
-                    // Blue of the map is no metal, too.
+                    // The map's blue must not make the material metallic, too.
                     metallic_factor: Some(0.0),
                     roughness_factor: Some(share(material.roughness)),
                     metallic_roughness_texture: orm.clone(),
@@ -61,7 +61,7 @@ impl Writer {
         cache: &mut PngCache,
     ) -> Result<Option<Value>, WriteError> {
         let share = share(material.translucency);
-        // Of a solid it would be the light in its depth, which is another extension's.
+        // In a solid it would be the light in its volume, which is another extension's.
         if share <= 0.0 || !material.double_sided {
             return Ok(None);
         }
@@ -71,7 +71,7 @@ impl Writer {
         if let Some(texture) = texture {
             look["diffuseTransmissionTexture"] = json!({ "index": texture.index });
         }
-        // What comes through a leaf is its colour, yellower: red and green more than blue.
+        // The light through a leaf has the leaf's colour, but is yellower: more red and green than blue.
         if material.kind == mesh::MaterialKind::Leaf {
             look["diffuseTransmissionColorFactor"] = json!([1.0, 0.95, 0.55]);
         }
@@ -79,7 +79,7 @@ impl Writer {
         Ok(Some(json!({ TRANSMISSION: look })))
     }
 
-    /// The texture's place in the file, in which equal ones are once.
+    /// Returns the texture's row in the file, in which equal ones are stored once.
     fn texture(
         &mut self,
         texture: Option<&Arc<mesh::Texture>>,
@@ -100,7 +100,7 @@ impl Writer {
             uri: None,
         });
         let image = row(self.root.images.len() - 1)?;
-        // A reader that knows no WebP finds no picture; what it cannot show it is told.
+        // A reader without WebP finds no picture; the required extension tells it so.
         let webp = kind == WEBP_TYPE;
         if webp {
             self.needs(WEBP);
@@ -115,13 +115,13 @@ impl Writer {
     }
 }
 
-/// The row of a texture's image: the one that is WebP, if there is one.
+/// Returns the row of a texture's image: the WebP, if there is one.
 fn source(texture: &Texture) -> Option<usize> {
     let webp = || usize::try_from(texture.extensions.as_ref()?.get(WEBP)?.get("source")?.as_u64()?).ok();
     webp().or_else(|| Some(texture.source? as usize))
 }
 
-/// What glTF has no place for.
+/// Returns the properties that glTF has no field for.
 fn extras(material: &mesh::Material) -> Value {
     let mut extras = json!({
         "kind": material.kind.word(),
@@ -145,7 +145,7 @@ pub(super) struct Pictures<'a> {
     bytes: &'a Bytes<'a>,
     files: Files<'a>,
     read: Vec<Option<Option<Arc<mesh::Texture>>>>,
-    /// Those of files, which images may share.
+    /// The pictures of files, which images may share.
     named: LiteMap<&'a str, Option<Arc<mesh::Texture>>>,
     pixels: usize,
 }
@@ -156,7 +156,7 @@ impl<'a> Pictures<'a> {
         Self { root, bytes, files, read, named: LiteMap::new(), pixels: 0 }
     }
 
-    /// The picture that is named; none where nothing is, or where it cannot be read.
+    /// Returns the picture that `info` names; none if it names none, or one that cannot be read.
     fn get(&mut self, info: Option<&TextureInfo>) -> Result<Option<Arc<mesh::Texture>>, MeshFault> {
         let texture = info.and_then(|info| self.root.textures.get(info.index as usize));
         let Some(source) = texture.and_then(source).filter(|&s| s < self.read.len()) else { return Ok(None) };
@@ -196,7 +196,7 @@ impl<'a> Pictures<'a> {
         Some(Arc::new(picture))
     }
 
-    /// The materials by their rows, and for each whether a texture was left out.
+    /// Returns the materials by their rows, and for each whether a texture was left out.
     pub(super) fn materials(&mut self) -> Result<Vec<(mesh::Material, bool)>, MeshFault> {
         let mut names = Names::default();
         let root = self.root;
@@ -220,7 +220,7 @@ impl<'a> Pictures<'a> {
         each.collect()
     }
 
-    /// Occlusion and roughness in one picture; of roughness alone one without occlusion.
+    /// Returns occlusion and roughness in one picture; roughness alone gets full white as occlusion.
     fn orm(&mut self, m: &Material) -> Result<Option<Arc<mesh::Texture>>, MeshFault> {
         let rough = m.pbr_metallic_roughness.metallic_roughness_texture.as_ref();
         let Some(picture) = self.get(rough)? else { return Ok(None) };
@@ -249,7 +249,7 @@ fn material(m: &Material, name: String, texture: Option<Arc<mesh::Texture>>, map
         translucency: translucency.clamp(0.0, 1.0),
         texture,
         maps,
-        // Blended leaves are drawn with holes: sorting them is what nobody does well.
+        // Blended leaves become leaves with holes: no renderer sorts blended ones well.
         alpha: match m.alpha_mode.as_deref() {
             None | Some("OPAQUE") => AlphaMode::Opaque,
             Some(_) => AlphaMode::Mask,
@@ -259,7 +259,7 @@ fn material(m: &Material, name: String, texture: Option<Arc<mesh::Texture>>, map
     }
 }
 
-/// The extras of an impostor.
+/// Parses the extras of an impostor.
 #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
 fn impostor(known: &Value) -> Option<Impostor> {
     let number = |v: &Value| v.as_f64().map(|x| x as f32).filter(|x| x.is_finite());

@@ -1,4 +1,4 @@
-//! glTF as text: a binary glTF taken apart into its JSON, one buffer and its pictures.
+//! glTF as text: splits a binary glTF into its JSON, one buffer and its pictures.
 
 use std::io;
 
@@ -11,14 +11,14 @@ use super::{BesideFile, FileStems, ModelFiles, file_name};
 use crate::error::WriteError;
 use crate::{Beside, ModelFormat};
 
-/// Takes a binary glTF of one of the writers here apart: the text, `STEM.bin` with what is left of its buffer, and each
-/// picture as `STEM-NAME.png` (`.jpg`, `.webp`). All that it holds is as it was: extensions, levels, instances, joints.
+/// Splits a binary glTF from one of the writers here: the text, `STEM.bin` with the rest of its buffer, and each
+/// picture as `STEM-NAME.png` (`.jpg`, `.webp`). The contents stay the same: extensions, levels, instances, joints.
 ///
 /// Guaranteed: the same file gives the same bytes.
 /// Cost: linear; all of it is in memory twice.
 ///
 /// # Errors
-/// [`WriteError::Io`] for bytes that are no binary glTF with one buffer in it.
+/// [`WriteError::Io`] for bytes that are not a binary glTF with one buffer in it.
 pub(super) fn text_files(glb: &[u8], stems: FileStems<'_>) -> Result<ModelFiles, WriteError> {
     let other = |e: &dyn std::fmt::Display| WriteError::Io(io::Error::other(e.to_string()));
     let (text, bin) = chunks(glb, ModelFormat::Glb).map_err(|e| other(&e))?;
@@ -68,7 +68,7 @@ fn broken() -> WriteError {
     WriteError::Io(io::Error::other("the binary glTF names bytes that it does not have"))
 }
 
-/// Takes a list out of the document.
+/// Removes a list from the document and returns it.
 fn rows(root: &mut Value, name: &str) -> Vec<Value> {
     let taken = root.as_object_mut().and_then(|root| root.remove(name));
     if let Some(Value::Array(rows)) = taken { rows } else { Vec::new() }
@@ -78,13 +78,13 @@ fn index(row: &Value, name: &str) -> Option<usize> {
     usize::try_from(row.get(name)?.as_u64()?).ok()
 }
 
-/// The bytes that a view, or the compressed form of one, names.
+/// Returns the bytes that a view, or its compressed form, names.
 fn range<'a>(view: &Value, bin: &'a [u8]) -> Option<&'a [u8]> {
     let from = index(view, "byteOffset").unwrap_or(0);
     bin.get(from..from.checked_add(index(view, "byteLength")?)?)
 }
 
-/// The views but those of pictures, what is left of the buffer, and the new place of each view.
+/// The views except those of pictures, the rest of the buffer, and the new row of each view.
 type Rest = (Vec<Value>, Vec<u8>, Vec<Option<usize>>);
 
 fn without(views: Vec<Value>, bin: &[u8], taken: &[usize]) -> Result<Rest, WriteError> {
@@ -94,7 +94,8 @@ fn without(views: Vec<Value>, bin: &[u8], taken: &[usize]) -> Result<Rest, Write
             places.push(None);
             continue;
         }
-        // A compressed view lies where its extension says; the view itself is what it becomes.
+        // The data of a compressed view lie where its extension says; the view itself describes them after
+        // decompression.
         let is_packed = view.pointer(&format!("/extensions/{COMPRESSION}")).is_some();
         let place = if is_packed { &mut view["extensions"][COMPRESSION] } else { &mut view };
         let bytes = range(place, bin).ok_or_else(broken)?;
@@ -111,7 +112,7 @@ fn without(views: Vec<Value>, bin: &[u8], taken: &[usize]) -> Result<Rest, Write
 struct Pictures {
     stem: String,
     files: Vec<BesideFile>,
-    /// Their views.
+    /// The views of the pictures.
     views: Vec<usize>,
 }
 
@@ -120,7 +121,7 @@ impl Pictures {
         Self { stem, files: Vec::new(), views: Vec::new() }
     }
 
-    /// One more picture, and the name of its file.
+    /// Adds a picture, and returns the name of its file.
     fn add(&mut self, image: &Value, view: usize, bytes: &[u8]) -> String {
         let word = |key| image.get(key).and_then(Value::as_str).unwrap_or_default();
         let ending = match word("mimeType") {
@@ -129,7 +130,7 @@ impl Pictures {
             _ => "png",
         };
         let mut stem = format!("{}-{}", self.stem, file_name(word("name"), "texture"));
-        // Two names that differ by case only are one file on some disks.
+        // On some disks, two names that differ only in case are the same file.
         let is_taken = |stem: &str| {
             let same =
                 |file: &BesideFile| file.name.to_lowercase() == format!("{stem}.{ending}").to_lowercase();
@@ -145,7 +146,7 @@ impl Pictures {
     }
 }
 
-/// A file's name as a URI: what is beyond ASCII as `%e8%8a%b1`.
+/// Returns a file's name as a URI: characters beyond ASCII as `%e8%8a%b1`.
 pub(crate) fn encoded(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
     for byte in name.bytes() {
@@ -171,7 +172,7 @@ mod tests {
     };
     use crate::{ExportSpec, ModelFormat};
 
-    /// A square with a texture whose every pixel has the colour `red`.
+    /// Returns a square with a texture whose every pixel has the colour `red`.
     fn model(names: &[&str]) -> Model {
         let mut mesh = TriMesh {
             positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],

@@ -1,20 +1,21 @@
-//! The codecs of `EXT_meshopt_compression`: attributes (version 0) and triangles (version 1), as the extension documents
-//! their bits.
+//! The codecs of `EXT_meshopt_compression`: attributes (version 0) and triangles (version 1), as the extension
+//! documents their bits.
 
-/// Bytes that are coded together.
+/// Number of bytes that are coded together.
 const GROUP: usize = 16;
-/// Least room for the first element at the end of a stream of attributes.
+/// Least number of bytes for the first element at the end of a stream of attributes.
 const TAIL: usize = 32;
-/// The first byte of a stream of attributes, and of triangles.
+/// First byte of a stream of attributes.
 const ATTRIBUTES: u8 = 0xa0;
+/// First byte of a stream of triangles.
 const TRIANGLES: u8 = 0xe1;
-/// Pairs of codes that stand for the second and third corner of a triangle, the frequent ones.
+/// Frequent pairs of codes for the second and third corner of a triangle.
 const PAIRS: [u8; 16] =
     [0x00, 0x76, 0x87, 0x56, 0x67, 0x78, 0xa9, 0x86, 0x65, 0x89, 0x68, 0x98, 0x01, 0x69, 0x00, 0x00];
-/// From this code on the third corner of a triangle at a known edge is none of the last corners.
+/// From this code on, the third corner of a triangle at a known edge is not among the recent corners.
 const FAR: u32 = 13;
 
-/// Elements of one block: as many as fit into 8 KiB, in whole groups, at most 256.
+/// Returns the number of elements of one block: as many as fit into 8 KiB, in whole groups, at most 256.
 const fn block(stride: usize) -> usize {
     let fits = 8192 / stride / GROUP * GROUP;
     if fits < 256 { fits } else { 256 }
@@ -28,7 +29,7 @@ const fn unzigzag(v: u8) -> u8 {
     (if v & 1 == 0 { 0 } else { 0xff }) ^ (v >> 1)
 }
 
-/// Elements of `stride` bytes (a multiple of 4, at most 256) as a stream.
+/// Encodes elements of `stride` bytes (a multiple of 4, at most 256) as a stream.
 pub(super) fn encode_attributes(bytes: &[u8], stride: usize) -> Vec<u8> {
     let mut out = vec![ATTRIBUTES];
     let first = bytes.get(..stride).map_or_else(|| vec![0; stride], <[u8]>::to_vec);
@@ -51,7 +52,7 @@ pub(super) fn encode_attributes(bytes: &[u8], stride: usize) -> Vec<u8> {
     out
 }
 
-/// Whole groups of bytes, each with as few bits as its bytes need.
+/// Encodes whole groups of bytes, each with as few bits as its bytes need.
 fn encode_bytes(bytes: &[u8], out: &mut Vec<u8>) {
     let header = out.len();
     out.resize(header + (bytes.len() / GROUP).div_ceil(4), 0);
@@ -90,7 +91,7 @@ fn encode_bytes(bytes: &[u8], out: &mut Vec<u8>) {
     }
 }
 
-/// The elements of a stream; none if it is broken.
+/// Decodes the elements of a stream; none if it is broken.
 pub(super) fn decode_attributes(stream: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     if stride == 0 || stride > 256 || !stride.is_multiple_of(4) {
         return None;
@@ -102,7 +103,7 @@ pub(super) fn decode_attributes(stream: &[u8], count: usize, stride: usize) -> O
     }
     let mut last = body[body.len() - stride..].to_vec();
     let mut rest = &body[..body_end];
-    // A block is no shorter than its headers: a hostile count is found before there is memory for it.
+    // A block is not shorter than its headers: a hostile count is refused before memory is taken for it.
     if count / 256 > rest.len() {
         return None;
     }
@@ -156,7 +157,7 @@ fn take<'a>(rest: &mut &'a [u8], n: usize) -> Option<&'a [u8]> {
     Some(head)
 }
 
-/// The last sixteen of something, the latest first.
+/// The last sixteen values, the latest first.
 struct Recent<T>([T; 16], usize);
 
 impl<T: Copy> Recent<T> {
@@ -174,13 +175,13 @@ impl<T: Copy> Recent<T> {
     }
 }
 
-/// What encoder and decoder of triangles know alike.
+/// State that encoder and decoder of triangles share.
 struct Seen {
     edges: Recent<[u32; 2]>,
     corners: Recent<u32>,
-    /// The next index that was not used yet, if indices come in order.
+    /// The next unused index, if indices come in order.
     next: u32,
-    /// The last that was written out.
+    /// The index that was last written in full.
     last: u32,
 }
 
@@ -221,7 +222,7 @@ impl Seen {
     }
 }
 
-/// Triangles as a stream. Corners may come back in another order of the same turn.
+/// Encodes triangles as a stream. Corners may come back in another order of the same orientation.
 pub(super) fn encode_triangles(triangles: &[[u32; 3]]) -> Vec<u8> {
     let (mut codes, mut data) = (vec![TRIANGLES], Vec::new());
     let mut seen = Seen::new();
@@ -232,7 +233,7 @@ pub(super) fn encode_triangles(triangles: &[[u32; 3]]) -> Vec<u8> {
             turns.iter().find(|t| edge == [t[0], t[1]]).map(|t| (k, *t))
         });
         if let Some((k, [a, b, c])) = edge {
-            beside(&mut seen, k, [a, b, c], (&mut codes, &mut data));
+            encode_at_edge(&mut seen, k, [a, b, c], (&mut codes, &mut data));
         } else {
             let turn = if b == seen.next {
                 1
@@ -249,9 +250,14 @@ pub(super) fn encode_triangles(triangles: &[[u32; 3]]) -> Vec<u8> {
     codes
 }
 
-/// A triangle at one of the last edges.
+/// Encodes a triangle at one of the recent edges.
 #[expect(clippy::cast_possible_truncation, reason = "codes of four bits")]
-fn beside(seen: &mut Seen, edge: usize, [a, b, c]: [u32; 3], (codes, data): (&mut Vec<u8>, &mut Vec<u8>)) {
+fn encode_at_edge(
+    seen: &mut Seen,
+    edge: usize,
+    [a, b, c]: [u32; 3],
+    (codes, data): (&mut Vec<u8>, &mut Vec<u8>),
+) {
     let known = seen.corners.find(|v| v == c).map(|k| k as u32).filter(|k| (1..FAR).contains(k));
     let mut code = match known {
         Some(k) => k,
@@ -277,7 +283,7 @@ fn beside(seen: &mut Seen, edge: usize, [a, b, c]: [u32; 3], (codes, data): (&mu
     seen.edges.push([a, c]);
 }
 
-/// A triangle at none of the last edges.
+/// Encodes a triangle at none of the recent edges.
 #[expect(clippy::cast_possible_truncation, reason = "codes of four bits")]
 fn alone(seen: &mut Seen, [a, b, c]: [u32; 3], (codes, data): (&mut Vec<u8>, &mut Vec<u8>)) {
     let reset = [a, b, c] == [0, 1, 2] && seen.next > 0;
@@ -286,7 +292,7 @@ fn alone(seen: &mut Seen, [a, b, c]: [u32; 3], (codes, data): (&mut Vec<u8>, &mu
         seen.corners.0 = [u32::MAX; 16];
     }
     let known = |seen: &Seen, v: u32| seen.corners.find(|w| w == v).filter(|&k| k < 14);
-    // Of both before either is new: new ones are known only later.
+    // Both are looked up before either is added, because the decoder adds new ones later.
     let (kb, kc) = (known(seen, b), known(seen, c));
     let mut of = |v: u32, known: Option<usize>| match known {
         Some(k) => k as u8 + 1,
@@ -321,7 +327,7 @@ fn alone(seen: &mut Seen, [a, b, c]: [u32; 3], (codes, data): (&mut Vec<u8>, &mu
     }
 }
 
-/// The indices of a stream of triangles; none if it is broken.
+/// Decodes the indices of a stream of triangles; none if it is broken.
 pub(super) fn decode_triangles(stream: &[u8], count: usize) -> Option<Vec<u32>> {
     let (&kind, body) = stream.split_first()?;
     if kind != TRIANGLES || !count.is_multiple_of(3) {

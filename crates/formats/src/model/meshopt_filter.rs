@@ -1,28 +1,28 @@
-//! The filters of `EXT_meshopt_compression`: elements that are stored in another form than programs draw them.
+//! The filters of `EXT_meshopt_compression`: elements are stored in another form than programs draw them.
 //!
-//! Each undoes in place what a stream holds, as the extension's text says (decoding is defined there; how to encode is not).
+//! Each decodes the contents of a stream in place, as the extension's text says (it defines decoding, not encoding).
 
-/// The word of [`Filter::Octahedral`].
+/// Name of [`Filter::Octahedral`].
 pub(super) const OCTAHEDRAL: &str = "OCTAHEDRAL";
-/// The word of [`Filter::Quaternion`].
+/// Name of [`Filter::Quaternion`].
 pub(super) const QUATERNION: &str = "QUATERNION";
-/// The word of [`Filter::Exponential`].
+/// Name of [`Filter::Exponential`].
 pub(super) const EXPONENTIAL: &str = "EXPONENTIAL";
 
-/// How the elements of a stream of attributes are stored.
+/// Stored form of the elements of a stream of attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Filter {
     /// Unit vectors as two coordinates on an octahedron; 4 or 8 bytes an element.
     Octahedral,
-    /// Unit quaternions as their three lesser numbers; 8 bytes an element.
+    /// Unit quaternions as their three smaller components; 8 bytes an element.
     Quaternion,
     /// Floats as a whole number of 24 bits times a power of 2; 4 bytes each.
     Exponential,
 }
 
 impl Filter {
-    /// `None` of a word that the extension does not have.
-    pub(super) fn of(word: &str) -> Option<Self> {
+    /// Returns the filter of this name; `None` if the extension does not have it.
+    pub(super) fn from_word(word: &str) -> Option<Self> {
         match word {
             OCTAHEDRAL => Some(Self::Octahedral),
             QUATERNION => Some(Self::Quaternion),
@@ -31,7 +31,7 @@ impl Filter {
         }
     }
 
-    /// From what is stored to what it means, in place; `None` if elements of `stride` bytes cannot be so.
+    /// Decodes elements in place; `None` if elements of `stride` bytes cannot have this form.
     pub(super) fn decode(self, bytes: &mut [u8], stride: usize) -> Option<()> {
         match (self, stride) {
             (Self::Octahedral, 4) => bytes.chunks_exact_mut(4).for_each(|e| {
@@ -71,7 +71,7 @@ impl Filter {
     }
 }
 
-/// A power of two, of -1022 to 1023.
+/// Returns a power of two, with an exponent from -1022 to 1023.
 fn two_to(power: i32) -> f64 {
     f64::from_bits(u64::from((1023 + power).unsigned_abs()) << 52)
 }
@@ -86,7 +86,7 @@ fn put(element: &mut [u8], words: [i16; 4]) {
     }
 }
 
-/// Two coordinates on an octahedron with its half axis `one` -> a vector of length `most`, in whole numbers.
+/// Maps two coordinates on an octahedron with its half axis `one` to a vector of length `most`, in whole numbers.
 fn on_sphere([x, y, one]: [f64; 3], most: f64) -> [f64; 3] {
     let one = if one == 0.0 { most } else { one };
     let (mut x, mut y) = (x / one, y / one);
@@ -98,12 +98,13 @@ fn on_sphere([x, y, one]: [f64; 3], most: f64) -> [f64; 3] {
     [x, y, z].map(|v| (v / length * most).round())
 }
 
-/// Steps of half an axis of the octahedron: to a degree, and to four.
+/// Steps of half an axis of the octahedron that keep a vector to a degree.
 pub(super) const FINE: i8 = 127;
+/// Steps of half an axis of the octahedron that keep a vector to four degrees.
 pub(super) const COARSE: i8 = 31;
 
-/// A unit vector as [`Filter::Octahedral`] stores it in four bytes: of the four pairs of whole numbers around it the one
-/// that comes back nearest. `steps` of half an axis, [`FINE`] or fewer.
+/// Returns a unit vector as [`Filter::Octahedral`] stores it in four bytes: among the four pairs of whole numbers
+/// around it the one that decodes to the nearest vector. `steps` of half an axis, [`FINE`] or fewer.
 pub(super) fn octahedral(n: [f32; 3], steps: i8) -> [u8; 4] {
     let one = f64::from(steps);
     let [x, y, z] = n.map(f64::from);
@@ -127,14 +128,14 @@ pub(super) fn octahedral(n: [f32; 3], steps: i8) -> [u8; 4] {
     [byte(best[0]), byte(best[1]), steps.to_le_bytes()[0], 0]
 }
 
-/// Steps of a number of a stored quaternion, from 0 to the largest that one of the lesser three can be.
+/// Number of steps of a stored component of a quaternion, from 0 to the largest that one of the smaller three can be.
 const TURN_STEPS: f64 = 127.0;
 
-/// A unit quaternion (x, y, z, w) as [`Filter::Quaternion`] stores it: of the eight rows of whole numbers around it the one
-/// whose turn comes back nearest, to two thirds of a degree.
+/// Returns a unit quaternion (x, y, z, w) as [`Filter::Quaternion`] stores it: among the eight rows of whole numbers
+/// around it the one that decodes to the nearest rotation, to two thirds of a degree.
 pub(super) fn quaternion(q: [f64; 4]) -> [u8; 8] {
     let largest = (0..4).fold(0, |best, k| if q[k].abs() > q[best].abs() { k } else { best });
-    // A quaternion and its negative are one turn: the number that is left out is positive.
+    // A quaternion and its negative are the same rotation: the omitted component is positive.
     let sign = if q[largest] < 0.0 { -1.0 } else { 1.0 };
     let scale = TURN_STEPS * core::f64::consts::SQRT_2;
     let own = [1, 2, 3].map(|k| sign * q[(largest + k) % 4]);
@@ -142,7 +143,7 @@ pub(super) fn quaternion(q: [f64; 4]) -> [u8; 8] {
         let step = |k: usize| (own[k] * scale).floor() + f64::from(u8::from(corner >> k & 1 == 1));
         [0, 1, 2].map(|k| step(k).clamp(-TURN_STEPS, TURN_STEPS))
     };
-    // The cosine of half the turn between the two.
+    // The cosine of half the angle between the two.
     let nearness = |steps: [f64; 3]| {
         let lesser = steps.map(|x| x / scale);
         let rest = 1.0 - lesser.iter().map(|x| x * x).sum::<f64>();
@@ -159,19 +160,21 @@ pub(super) fn quaternion(q: [f64; 4]) -> [u8; 8] {
     stored
 }
 
-/// The power of two of the largest step that is no longer than `step`, which is above 0.
+/// Returns the exponent of the largest power of two that is at most `step`, which is above 0.
 pub(super) fn power_within(step: f64) -> i32 {
     let exponent = i32::try_from(step.to_bits() >> 52 & 0x7ff).unwrap_or(0) - 1023;
     exponent.clamp(LEAST_POWER, MOST_POWER)
 }
 
-/// Powers of two of steps that single precision can hold, with 24 bits of them.
+/// Smallest exponent of a step with which single precision can hold 24 bits of steps.
 const LEAST_POWER: i32 = -100;
+/// Largest such exponent.
 const MOST_POWER: i32 = 100;
-/// The largest whole number of 24 bits with a sign.
+/// The largest signed whole number of 24 bits.
 const MOST_WHOLE: f64 = 8_388_607.0;
 
-/// A number as [`Filter::Exponential`] stores it, in steps of 2 to the power of `power`: it comes back to half a step.
+/// Returns a number as [`Filter::Exponential`] stores it, in steps of 2 to the power of `power`: it decodes to within
+/// half a step.
 pub(super) fn exponential(x: f64, power: i32) -> [u8; 4] {
     let step = two_to(power);
     #[expect(clippy::cast_possible_truncation, reason = "24 bits")]
@@ -191,7 +194,7 @@ mod tests {
         for i in 0..60_000 {
             let mut q =
                 [0.618_034, 0.754_878, 0.569_840, 0.819_173].map(|k| (f64::from(i) * k).fract() - 0.5);
-            // A third are near those whose numbers are equal, where what is left out takes the errors of all.
+            // A third have components that are nearly equal: there the omitted one takes the errors of all.
             if i % 3 == 0 {
                 q = q.map(|x| if x < 0.0 { -0.5 } else { 0.5 } + x / 10.0);
             }
@@ -221,7 +224,7 @@ mod tests {
         assert!(fine < 1.0 && coarse < 4.0, "{fine}, {coarse} degrees");
     }
 
-    /// Degrees between a vector and what comes back of it, at most.
+    /// Returns the largest angle in degrees between a vector and its decoded form.
     fn worst(steps: i8) -> f64 {
         let mut worst: f64 = 0.0;
         for i in 0..2000 {
@@ -263,7 +266,7 @@ mod tests {
             Filter::Exponential.decode(&mut e.clone(), 4).expect("four bytes");
         }
         assert_eq!(Filter::Quaternion.decode(&mut [0; 4], 4), None);
-        assert_eq!(Filter::of("WRONG"), None);
+        assert_eq!(Filter::from_word("WRONG"), None);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod axes;
 mod columns;
 mod glb_levels;
+mod glb_nodes;
 mod glb_pack;
 mod glb_read;
 mod glb_write;
@@ -19,6 +20,7 @@ mod picture;
 pub(crate) mod ply_read;
 mod ply_write;
 mod stl;
+mod usd_assembly;
 mod usd_write;
 mod usdz;
 
@@ -32,7 +34,8 @@ use mesh::{MaterialKind, Model};
 pub use axes::ExportSpec;
 pub(crate) use columns::{CompressedColumn, compressed_floats, compressed_turns};
 pub use glb_levels::write_glb_levels;
-pub use glb_pack::{Packing, write_glb_packed};
+pub use glb_nodes::{NamedNodes, write_glb_nodes};
+pub use glb_pack::{Packing, write_glb_joined, write_glb_packed};
 pub(crate) use glb_write::write_container;
 pub use glb_write::{
     Level, Morph, write_glb, write_glb_morph, write_glb_rigged, write_glb_scene, write_glb_with,
@@ -43,6 +46,8 @@ pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};
 pub use ply_write::write_ply;
 pub use stl::write_stl;
+pub use usd_assembly::{Assembly, AssemblyJoint, BoundCopies, WindGroup, assembly_files};
+pub(crate) use usd_write::{Identifiers, Quoted, identifier};
 pub use usd_write::{UsdFiles, usd_files};
 
 use crate::error::{FileFault, ModelError, Place, WriteError};
@@ -54,26 +59,26 @@ pub const MAX_MODEL_BYTES: u64 = 1 << 30;
 /// Most vertices or triangles of a model that is read.
 pub(crate) const MAX_ROWS: usize = 32 << 20;
 
-/// A file that a model refers to: a buffer, a material file, a texture.
+/// A file to which a model refers: a buffer, a material file, a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SideFile<'a> {
-    /// Its path as it is written, of whatever system.
+    /// Its path as written, with the separators of any system.
     pub name: &'a str,
-    /// The material file that names it, by the path that the model has for it: paths are relative to who names them. None:
-    /// the model itself.
+    /// The material file that names it, by the path that the model has for it: paths are relative to the file that
+    /// names them. None: the model itself names it.
     pub by: Option<&'a str>,
 }
 
-/// Why a file that a model refers to is not given.
+/// Reason why a resolver does not return a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoFile {
-    /// There is none: what can do without it does.
+    /// There is none: the model is read without it, where that is possible.
     Missing,
-    /// It must not be read, and neither is the model: why, who names it, and what to do.
+    /// The file must not be read, and neither is the model: the reason, what names the file, and what to do.
     Refused(String),
 }
 
-/// Finds a file that a model refers to. Where it may lie is the caller's to decide, as a model may come from anybody.
+/// Finds a file to which a model refers. The caller decides where it may lie, as a model may come from anybody.
 pub type Resolver<'a> = &'a dyn Fn(SideFile<'_>) -> Result<Vec<u8>, NoFile>;
 
 /// A resolver that finds nothing.
@@ -86,10 +91,10 @@ pub fn no_files(_: SideFile<'_>) -> Result<Vec<u8>, NoFile> {
 
 /// Reads a model.
 ///
-/// `spec` says which unit and up axis the file has where the format does not (OBJ, PLY, STL); the model comes
-/// back in metres, +Y up. `resolve` finds the files that an OBJ or a glTF refers to; each is asked for once. Missing normals are computed.
-/// Guaranteed: `model.validate()` finds nothing but degenerate triangles. What was left out is told in
-/// `report`.
+/// `spec` gives the unit and up axis of the file if the format does not (OBJ, PLY, STL); the model comes back in
+/// metres, +Y up. `resolve` finds the files to which an OBJ or a glTF refers; each is requested once. Missing normals
+/// are computed. Guaranteed: `model.validate()` finds nothing but degenerate triangles. The `report` lists what was
+/// left out.
 ///
 /// # Errors
 /// [`ModelError`] with the place in the file and what to do.
@@ -139,8 +144,9 @@ pub fn read_model(
     Ok(model)
 }
 
-/// Writes a model to one stream; of formats with files beside theirs ([`FormatRow::beside`](crate::FormatRow)) without
-/// these: see [`model_files`]. What the wind does is left out, with a warning, where the format has no room for it.
+/// Writes a model to one stream, without the companion files that some formats have
+/// ([`FormatRow::beside`](crate::FormatRow)): see [`model_files`]. Wind is left out, with a warning, if the format
+/// has no room for it.
 ///
 /// # Errors
 /// [`WriteError`] of the sink or for a model that is not sound.
@@ -172,19 +178,19 @@ pub fn write_model(
     }
 }
 
-/// A model's file and those that it names: keep the names.
+/// A model's file and the companion files that it names: keep the names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ModelFiles {
-    /// The bytes of its own file.
+    /// Bytes of the model's own file.
     pub own: Vec<u8>,
-    /// The files beside it.
+    /// The companion files.
     pub beside: Vec<BesideFile>,
 }
 
-/// A file that a model's own names.
+/// A companion file that a model's own file names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BesideFile {
-    /// What it holds.
+    /// Its content.
     pub what: Beside,
     /// Its name, without a folder.
     pub name: String,
@@ -198,15 +204,15 @@ impl ModelFiles {
         Self { own, beside: textures.into_iter().map(file).collect() }
     }
 
-    /// All files with their names, the model's own, `name`, first.
+    /// Returns all files with their names, first the model's own, `name`.
     pub fn named(self, name: String) -> Vec<(String, Vec<u8>)> {
         let beside = self.beside.into_iter().map(|file| (file.name, file.bytes));
         std::iter::once((name, self.own)).chain(beside).collect()
     }
 }
 
-/// Writes a model with the files beside it, which are named after `stems`. What the wind does is left out, with a warning,
-/// where the format has no room for it. `cache`: encoded textures, kept for the next time.
+/// Writes a model with its companion files, which are named after `stems`. Wind is left out, with a warning, if the
+/// format has no room for it. `cache`: encoded textures, kept for the next time.
 ///
 /// # Errors
 /// [`WriteError`] for a model that is not sound.
@@ -254,10 +260,11 @@ pub fn model_files<'a>(
     }
 }
 
-/// The files of a binary glTF that is to be in `format`, one with room for the same ([`Room::Packing`] and the like).
+/// Returns the files of a binary glTF in `format`, which must have room for the same contents ([`Room::Packing`] and
+/// the like).
 ///
 /// # Errors
-/// [`WriteError::ReadOnly`] of other formats.
+/// [`WriteError::ReadOnly`] for other formats.
 pub fn gltf_files<'a>(
     glb: Vec<u8>,
     format: ModelFormat,
@@ -270,13 +277,14 @@ pub fn gltf_files<'a>(
     }
 }
 
-/// The files beside a model's own whose names are known before there is a model; textures are named after materials.
+/// Returns the companion files of a model whose names are known before there is a model; textures are named after
+/// materials.
 pub fn names_beside(format: ModelFormat, stem: &str) -> Vec<(Beside, String)> {
     let named = |what: &Beside| Some((*what, format!("{}.{}", file_name(stem, "model"), what.ending()?)));
     format.row().beside.iter().filter_map(named).collect()
 }
 
-/// Says so where a format fixes its axes and unit and others are asked for.
+/// Warns if a format fixes its axes and unit and `spec` asks for others.
 fn warn_of_axes(format: ModelFormat, spec: &ExportSpec, report: &mut Report) {
     if !format.holds(Room::Axes) && !spec.is_default() {
         report.warn(
@@ -286,7 +294,7 @@ fn warn_of_axes(format: ModelFormat, spec: &ExportSpec, report: &mut Report) {
     }
 }
 
-/// Says so where a model has wind and goes into a format that has no room for it.
+/// Warns if a model has wind and the format has no room for it.
 pub fn warn_of_wind(model: &Model, format: &str, report: &mut Report) {
     if model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
         base::warn!(
@@ -298,14 +306,14 @@ pub fn warn_of_wind(model: &Model, format: &str, report: &mut Report) {
     }
 }
 
-/// Bytes of a name that leave room for a material's name and an extension in the 255 that file systems take.
+/// Most bytes of a name: they leave room for a material's name and an extension in the 255 that file systems allow.
 const MOST_STEM_BYTES: usize = 208;
 
-/// A name that every file system takes, and that stands in a file without quotes: letters, digits, signs and marks of
-/// any language with `-`, `_` and `.`; all else becomes `-`, and what is drawn as nothing or turns the direction of
-/// writing is left out. At most 100 characters and 208 bytes; `otherwise` if nothing is left.
+/// Returns a name that every file system accepts, and that a file can hold without quotes: letters, digits, signs and
+/// marks of any language with `-`, `_` and `.`; all else becomes `-`, and characters that are invisible or change the
+/// direction of writing are left out. At most 100 characters and 208 bytes; `otherwise` if nothing is left.
 ///
-/// Not guaranteed: Unicode's normal form, and that no system keeps the name for a device.
+/// Not guaranteed: Unicode's normal form, and that no system reserves the name for a device.
 ///
 /// ```
 /// assert_eq!(formats::file_name("a rose/../花 🌹", "model"), "a-rose-..-花-🌹");
@@ -327,11 +335,12 @@ fn usual(c: char) -> bool {
     if c.is_ascii() {
         return c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     }
-    // Neither the mark of what could not be read nor what is no character.
+    // Neither the replacement character nor code points that are not characters.
     !c.is_control() && !c.is_whitespace() && c != char::REPLACEMENT_CHARACTER && (c as u32 & 0xfffe) != 0xfffe
 }
 
-/// Unicode's `Default_Ignorable_Code_Point`: signs of direction, joiners, variation selectors. Some disks do not see them.
+/// Returns whether a character is a `Default_Ignorable_Code_Point` of Unicode: signs of direction, joiners, variation
+/// selectors. Some file systems ignore them.
 fn unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}'..='\u{1160}' | '\u{17b4}'..='\u{17b5}'
         | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
@@ -339,14 +348,14 @@ fn unseen(c: char) -> bool {
         | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// Refuses models that no file should be made of. Degenerate triangles may pass.
+/// Refuses models that no file should hold. Degenerate triangles may pass.
 pub(crate) fn check(model: &Model) -> Result<(), WriteError> {
     for part in &model.parts {
         let fail = |fault| Err(WriteError::Model { part: part.name.clone(), fault });
         if part.material.index() >= model.materials.len() {
             return fail(mesh::MeshFault::Material(part.material.index()));
         }
-        // Odd normals are mended on the way out.
+        // Writers repair invalid normals.
         let bad = part.mesh.validate();
         let mut bad =
             bad.filter(|f| !matches!(f, mesh::MeshFault::Degenerate(_) | mesh::MeshFault::Normal(_)));
@@ -357,12 +366,12 @@ pub(crate) fn check(model: &Model) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// 0 to 1, as materials demand; NaN is 0.
+/// Clamps to 0 to 1, as materials demand; NaN becomes 0.
 pub(crate) fn share(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
-/// The textures that lie beside a model, `STEM-MATERIAL.png`, each once.
+/// Texture files next to a model, `STEM-MATERIAL.png`, each once.
 pub(crate) struct TextureFiles<'a> {
     stem: &'a str,
     /// Name and bytes.
@@ -377,7 +386,7 @@ impl<'a> TextureFiles<'a> {
         Self { stem, files: Vec::new(), written: Vec::new(), cache: PngCache::new() }
     }
 
-    /// The name of the file that holds a texture; `material` is the first that uses it.
+    /// Returns the name of the file that holds a texture; `material` is the first that uses it.
     pub(crate) fn name(
         &mut self,
         texture: &Arc<mesh::Texture>,
@@ -388,7 +397,7 @@ impl<'a> TextureFiles<'a> {
             return Ok(self.files[known].0.clone());
         }
         let mut name = format!("{}-{}.png", self.stem, file_name(material, "texture"));
-        // Two names that differ by case only are one file on some disks.
+        // On some disks, two names that differ only in case are the same file.
         while self.files.iter().any(|(n, _)| n.to_lowercase() == name.to_lowercase()) {
             name.insert_str(name.len() - 4, "-2");
         }
@@ -402,9 +411,9 @@ impl<'a> TextureFiles<'a> {
     }
 }
 
-/// A unit normal in any case: glTF's validator and lighting demand it.
+/// Returns a unit normal in any case: glTF's validator and lighting demand it.
 pub(crate) fn unit(n: [f32; 3]) -> [f32; 3] {
-    // In f64: the squares of 1e-23 and of 1e20 are beyond f32.
+    // In f64, because the squares of 1e-23 and of 1e20 are beyond f32.
     let wide = DVec3::from(n.map(f64::from));
     let length = wide.length();
     if (length - 1.0).abs() < 1e-4 {
@@ -416,7 +425,7 @@ pub(crate) fn unit(n: [f32; 3]) -> [f32; 3] {
     }
 }
 
-/// Distinct names: a repeated one gets `-2`, `-3`, ...
+/// Makes names distinct: a repeated one gets `-2`, `-3`, ...
 #[derive(Debug, Default)]
 pub(crate) struct Names(std::collections::BTreeMap<String, usize>);
 
@@ -434,7 +443,7 @@ impl Names {
     }
 }
 
-/// The kind that a word or a name such as `leaf-2` stands for.
+/// Returns the kind that a word or a name such as `leaf-2` stands for.
 pub(crate) fn kind_of(name: &str) -> MaterialKind {
     use MaterialKind::{Bark, Disc, Fruit, Leaf, Other, Petal, Root, Stamen, Stem, YoungBark};
     let lower = name.to_ascii_lowercase();
@@ -442,6 +451,6 @@ pub(crate) fn kind_of(name: &str) -> MaterialKind {
         let rest = lower.strip_prefix(kind.word());
         rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_alphabetic()))
     };
-    // The longer word first.
+    // The longer word comes first.
     [YoungBark, Bark, Stem, Leaf, Petal, Disc, Fruit, Root, Stamen].into_iter().find(begins).unwrap_or(Other)
 }

@@ -1,15 +1,16 @@
-//! Files that a model names: asked for once each, and no more of them than models have.
+//! Files that a model names: requested once each, and within limits.
 
 use super::{NoFile, Resolver, SideFile};
 use crate::error::FileFault;
 
-/// What one model may name.
+/// Limits of the files that one model may name.
 pub(super) struct NamedLimits {
-    /// Files: buffers, pictures, files of materials, textures. Large scenes have hundreds.
+    /// Most files: buffers, pictures, files of materials, textures. Large scenes have hundreds.
     files: usize,
-    /// Bytes of all of them together: as many as a model that has them in itself. One file by many names is many.
+    /// Most bytes of all of them together, as for a model that contains them. A file with several names counts
+    /// several times.
     bytes: u64,
-    /// Pixels of all textures together, in bytes; those beyond are left out.
+    /// Most pixels of all textures together, in bytes; those beyond are left out.
     pub(super) pixels: usize,
 }
 
@@ -28,7 +29,7 @@ impl<'a> Files<'a> {
         Self { resolve, asked: 0, bytes: 0 }
     }
 
-    /// What is in a file; none where there is none.
+    /// Returns the content of a file; none if there is none.
     pub(super) fn get(&mut self, file: SideFile<'_>) -> Result<Option<Vec<u8>>, FileFault> {
         self.asked += 1;
         if self.asked > NAMED.files {
@@ -50,7 +51,8 @@ impl<'a> Files<'a> {
         Ok(Some(bytes))
     }
 
-    /// What is in the file of a URI: by its letters, as many programs write names, or else decoded, as glTF says.
+    /// Returns the content of the file that a URI names: first literally, as many programs write names, or else
+    /// decoded, as glTF says.
     pub(super) fn get_uri(&mut self, uri: &str) -> Result<Option<Vec<u8>>, FileFault> {
         let found = self.get(SideFile { name: uri, by: None })?;
         match (found, decode_uri(uri)) {
@@ -60,8 +62,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// A relative URI with its `%20` and the like as the characters that they stand for; none where there are none, or where
-/// they stand for no text.
+/// Decodes `%20` and the like in a relative URI; none if it has none, or if they do not decode to text.
 ///
 /// ```
 /// assert_eq!(formats::decode_uri("old%20oak.bin").as_deref(), Some("old oak.bin"));

@@ -12,7 +12,7 @@ use super::{MAX_ROWS, Names, Resolver, SideFile, kind_of, read_picture, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
-/// Position, texture coordinate and normal of a corner; `u32::MAX` where there is none.
+/// Position, texture coordinate and normal of a corner; `u32::MAX` for none.
 type Corner = [u32; 3];
 const NONE: u32 = u32::MAX;
 
@@ -33,11 +33,11 @@ struct Reader {
     triangles: usize,
     lines: usize,
     title: Option<String>,
-    /// The files of materials that were read, or that are not there.
+    /// The material files that were read, or that are missing.
     libraries: LiteMap<String, ()>,
-    /// Textures by the file of materials that names them, and their name in it.
+    /// Textures by the material file that names them, and their name in it.
     textures: LiteMap<(String, String), Option<Arc<Texture>>>,
-    /// Of all textures, in bytes.
+    /// Pixels of all textures, in bytes.
     pixels: usize,
 }
 
@@ -51,7 +51,7 @@ pub(super) fn read(
     resolve: Resolver<'_>,
     report: &mut Report,
 ) -> Result<Model, ModelError> {
-    // Names may be in any encoding; everything that we need is ASCII.
+    // Names may be in any encoding; everything that the reader needs is ASCII.
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::default();
     let mut files = Files::new(resolve);
@@ -101,7 +101,7 @@ impl Reader {
                 }
                 self.positions.push([v[0], v[1], v[2]]);
                 if rest.split_ascii_whitespace().nth(5).is_some() {
-                    // White for the vertices before that had none.
+                    // White for the earlier vertices, which had no colour.
                     self.colors.resize(self.positions.len() - 1, [1.0; 3]);
                     self.colors.push([v[3], v[4], v[5]].map(linear));
                 }
@@ -179,7 +179,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The part that faces go to now.
+    /// Returns the part to which faces belong now.
     fn row(&mut self) -> usize {
         let wanted = self.material.clone().unwrap_or_default();
         let material = match self.by_name.get(&wanted) {
@@ -202,7 +202,7 @@ impl Reader {
         row
     }
 
-    /// Reads a file of materials, the first time that it is named.
+    /// Reads a material file, the first time that it is named.
     fn library(&mut self, name: &str, files: &mut Files<'_>, report: &mut Report) -> Result<(), FileFault> {
         if self.libraries.insert(name.to_owned(), ()).is_some() {
             return Ok(());
@@ -257,7 +257,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The texture that a file of materials names; none where it cannot be read.
+    /// Returns the texture that a material file names; none if it cannot be read.
     fn texture(
         &mut self,
         name: &str,
@@ -269,7 +269,7 @@ impl Reader {
             return Ok(known.clone());
         }
         let mut bytes = files.get(SideFile { name, by: Some(library) })?;
-        // Beside the model, as some programs write it.
+        // Some programs write the path relative to the model.
         if bytes.is_none() && library.contains(['/', '\\']) {
             bytes = files.get(SideFile { name, by: None })?;
         }
@@ -316,7 +316,7 @@ impl Reader {
         model
     }
 
-    /// Distinct corners in the order of their numbers, which is the order of our own files.
+    /// Returns the mesh of distinct corners in the order of their numbers, which is the order of our own files.
     fn mesh(&self, faces: &[[Corner; 3]]) -> TriMesh {
         let mut corners: Vec<Corner> = faces.iter().flatten().copied().collect();
         base::sort_by_key(&mut corners, |&corner| corner);
@@ -342,7 +342,7 @@ impl Reader {
     }
 }
 
-/// `# burgeon kind=leaf translucency=0.25 double-sided`
+/// Reads `# burgeon kind=leaf translucency=0.25 double-sided`.
 fn own_words(comment: &str, m: &mut Material) {
     let Some(words) = comment.strip_prefix("burgeon ") else { return };
     for word in words.split_ascii_whitespace() {
@@ -358,7 +358,7 @@ fn own_words(comment: &str, m: &mut Material) {
     }
 }
 
-/// A 1-based index, or one counted from the end if negative, as a row.
+/// Converts a 1-based index, or a negative one that counts from the end, to a row.
 fn index(text: &str, length: usize) -> Option<u32> {
     let n: i64 = text.parse().ok()?;
     let row = if n < 0 { i64::try_from(length).ok()?.checked_add(n)? } else { n.checked_sub(1)? };
@@ -366,7 +366,7 @@ fn index(text: &str, length: usize) -> Option<u32> {
     u32::try_from(row).ok()
 }
 
-/// Up to `N` numbers, of which the first `least` must be there; the rest are zero.
+/// Parses up to `N` numbers, of which the first `least` must be there; the rest are zero.
 fn floats<const N: usize>(text: &str, least: usize, line: usize) -> Result<[f32; N], ModelError> {
     let mut out = [0.0; N];
     let mut words = text.split_ascii_whitespace();

@@ -8,25 +8,26 @@ use super::picture::srgb;
 use super::{ExportSpec, TextureFiles, check, file_name, unit};
 use crate::error::WriteError;
 
-/// The files that make up an OBJ. The OBJ names its material file and that its textures: keep the names.
+/// The files that make up an OBJ. The OBJ names its material file, which names its textures: keep the names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ObjFiles {
     /// `STEM.obj`.
     pub obj: Vec<u8>,
     /// `STEM.mtl`.
     pub mtl: Vec<u8>,
-    /// The name by which the OBJ refers to it: the stem with every character that OBJ cannot hold replaced.
+    /// The name by which the OBJ refers to its material file: the stem with every character replaced that OBJ cannot
+    /// hold.
     pub mtl_name: String,
     /// Name and bytes of each texture, `STEM-MATERIAL.png`.
     pub textures: Vec<(String, Vec<u8>)>,
 }
 
-/// How the files of one model are called, without folder and extension. Of a `&str`: all by that name.
+/// Names of the files of one model, without folder and extension. A `&str` converts to the same name for all.
 #[derive(Clone, Copy, Debug)]
 pub struct FileStems<'a> {
     /// The OBJ and its material file.
     pub model: &'a str,
-    /// What textures start with, before `-MATERIAL.png`.
+    /// Prefix of textures, before `-MATERIAL.png`.
     pub textures: &'a str,
 }
 
@@ -38,8 +39,8 @@ impl<'a> From<&'a str> for FileStems<'a> {
 
 /// Writes a model as OBJ, MTL and PNG files of these names.
 ///
-/// Guaranteed: names, positions, normals, texture coordinates, materials and colours come back when read here;
-/// other programs do not see kind, translucency and sidedness, which OBJ has no words for.
+/// Guaranteed: names, positions, normals, texture coordinates, materials and colours come back when read here; other
+/// programs do not see kind, translucency and sidedness, which OBJ cannot express.
 ///
 /// # Errors
 /// [`WriteError`] for a model that is not sound.
@@ -111,7 +112,7 @@ fn materials(model: &Model, textures: &mut TextureFiles<'_>) -> Result<Vec<u8>, 
         let [r, g, b] = m.base_color;
         let sides = if m.double_sided { " double-sided" } else { "" };
         writeln!(mtl, "newmtl {}", one_line(&m.name))?;
-        // What MTL has no word for, in a comment that our own reader understands.
+        // Properties without an MTL keyword, in a comment that our own reader understands.
         writeln!(mtl, "# burgeon kind={} translucency={}{sides}", m.kind.word(), m.translucency)?;
         writeln!(mtl, "Kd {r} {g} {b}\nKs 0 0 0\nPr {}\nPm 0\nd 1\nillum 1", m.roughness)?;
         if let Some(texture) = &m.texture {
@@ -124,12 +125,12 @@ fn materials(model: &Model, textures: &mut TextureFiles<'_>) -> Result<Vec<u8>, 
         let maps = [
             ("norm", "normal", &m.maps.normal),
             ("map_Pr", "orm", &m.maps.orm),
-            // A height as a share of the texture's width.
+            // Height as a share of the texture's width.
             ("bump -bm 0.03", "height", &m.maps.height),
         ];
         for (word, what, map) in maps {
             if let Some(map) = map {
-                // Of occlusion and roughness the second channel is the roughness.
+                // In the texture of occlusion and roughness, the second channel is the roughness.
                 let channel = if word == "map_Pr" { " -imfchan g" } else { "" };
                 let name = textures.name(map, &format!("{}-{what}", m.name))?;
                 writeln!(mtl, "{word}{channel} {name}")?;
@@ -140,7 +141,7 @@ fn materials(model: &Model, textures: &mut TextureFiles<'_>) -> Result<Vec<u8>, 
     Ok(mtl)
 }
 
-/// A name that stays within its line.
+/// Returns a name without line breaks.
 fn one_line(name: &str) -> String {
     let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if name.trim().is_empty() { "unnamed".into() } else { name.trim().to_owned() }

@@ -12,9 +12,9 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 use crate::error::WriteError;
 
-/// Widest and highest picture that is read.
+/// Greatest width and height of a picture that is read, in pixels.
 const MAX_SIDE: u32 = 8_192;
-/// Memory for one picture that is read.
+/// Most memory for one picture that is read, in bytes.
 const MAX_PICTURE_BYTES: usize = 512 << 20;
 
 /// Writes RGBA pixels (rows from the top, sRGB, `4 * width * height` bytes) as a PNG.
@@ -51,14 +51,14 @@ pub fn write_png(width: u32, height: u32, pixels: &[u8], out: impl Write) -> Res
     written.map_err(|e| WriteError::Io(e.into()))
 }
 
-/// Whether there are pixels, four bytes for each of the picture.
+/// Returns whether there are four bytes for each pixel.
 fn fits(width: u32, height: u32, pixels: &[u8]) -> bool {
     width > 0 && height > 0 && pixels.len() as u64 == 4 * u64::from(width) * u64::from(height)
 }
 
 /// Reads a PNG or JPEG within bounds. `None` if it is neither, broken, or too large.
 ///
-/// Of a PNG with 16 bits the upper eight are taken.
+/// A PNG with 16 bits gives its upper eight.
 pub fn read_picture(bytes: &[u8]) -> Option<Texture> {
     if bytes.starts_with(b"\x89PNG\r\n\x1a\n") { read_png(bytes) } else { read_jpeg(bytes) }
 }
@@ -98,14 +98,14 @@ fn read_jpeg(bytes: &[u8]) -> Option<Texture> {
     })
 }
 
-/// What an image of [`webp`] is in a file.
+/// Media type of the images of [`webp`].
 pub(super) const WEBP_TYPE: &str = "image/webp";
 
-/// The texture as WebP without loss; `None` of one that is larger than it can be, or not sound.
+/// Encodes the texture as WebP without loss; `None` if it is too large for the format or not sound.
 #[cfg(feature = "webp")]
 pub(super) fn webp(texture: &Texture) -> Option<Vec<u8>> {
     let Texture { width, height, pixels } = texture;
-    // The format has no more; and its encoder panics at pixels that do not fit the size.
+    // The format ends at this size, and its encoder panics at pixels that do not fit the size.
     if !fits(*width, *height, pixels) || width.max(height) > &16_384 {
         return None;
     }
@@ -121,7 +121,7 @@ pub(super) fn webp(_texture: &Texture) -> Option<Vec<u8>> {
     None
 }
 
-/// Reads a WebP that stands still, within bounds. `None` if it is none, broken, or too large, and without the feature `webp`.
+/// Reads a still WebP within bounds. `None` if it is not one, is broken or too large, and without the feature `webp`.
 #[cfg(feature = "webp")]
 pub(super) fn read_webp(bytes: &[u8]) -> Option<Texture> {
     let mut decoder = image_webp::WebPDecoder::new(Cursor::new(bytes)).ok()?;
@@ -141,25 +141,25 @@ pub(super) fn read_webp(_bytes: &[u8]) -> Option<Texture> {
     None
 }
 
-/// RGB as RGBA.
+/// Converts RGB to RGBA.
 fn opaque(rgb: &[u8]) -> Vec<u8> {
     rgb.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect()
 }
 
-/// Encoded textures, so that writing a model again (or another with the same textures) does not encode them
-/// again. Holds what it has encoded until it is dropped.
+/// Encoded textures, so that writing a model again (or another with the same textures) does not encode them again.
+/// Holds its textures until it is dropped.
 #[derive(Debug, Default)]
 pub struct PngCache {
     entries: Vec<(Arc<Texture>, Arc<[u8]>)>,
 }
 
 impl PngCache {
-    /// An empty cache.
+    /// Returns an empty cache.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The texture as a PNG.
+    /// Returns the texture as a PNG.
     ///
     /// # Errors
     /// [`WriteError::Texture`] if its pixels do not fit its size.
@@ -175,13 +175,13 @@ impl PngCache {
     }
 }
 
-/// Linear 0 to 1 as sRGB 0 to 1 (IEC 61966-2-1).
+/// Converts linear 0 to 1 to sRGB 0 to 1 (IEC 61966-2-1).
 pub(super) fn srgb(linear: f32) -> f32 {
     let x = f64::from(if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) });
     narrow(base::srgb_of_linear(x))
 }
 
-/// sRGB 0 to 1 as linear 0 to 1.
+/// Converts sRGB 0 to 1 to linear 0 to 1.
 pub(super) fn linear(srgb: f32) -> f32 {
     let y = f64::from(if srgb.is_nan() { 0.0 } else { srgb.clamp(0.0, 1.0) });
     narrow(base::linear_of_srgb(y))
@@ -261,7 +261,7 @@ mod tests {
             let pixel = |x: usize, y: usize| &picture.pixels[4 * (16 * y + x)..][..4];
             assert!(near(pixel(2, 2), left), "{:?} is not {left:?}", pixel(2, 2));
             assert!(near(pixel(13, 8), right), "{:?} is not {right:?}", pixel(13, 8));
-            // Cut off anywhere it is none, or one of that size; never a panic.
+            // A truncated file gives none, or a picture of that size; never a panic.
             for end in 0..bytes.len() {
                 assert!(read_picture(&bytes[..end]).is_none_or(|p| p.pixels.len() == 1024));
             }

@@ -1,5 +1,5 @@
-//! PLY, text or binary -> Model. Our own reader, because headers may lie: nothing is reserved or looped over
-//! before the bytes for it are known to be there.
+//! PLY, text or binary -> Model. Our own reader, because headers may lie: it neither reserves nor loops before it
+//! knows that the bytes exist.
 
 use base::Report;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
@@ -9,7 +9,7 @@ use super::{MAX_ROWS, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
-/// Lines of a header; real ones have a few dozen.
+/// Most lines of a header; real ones have a few dozen.
 const MAX_HEADER_LINES: usize = 1_000;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Scalar {
         }
     }
 
-    fn is_float(self) -> bool {
+    pub(crate) fn is_float(self) -> bool {
         matches!(self, Self::F32 | Self::F64)
     }
 }
@@ -130,7 +130,7 @@ pub(super) fn read(bytes: &[u8], name: &str, report: &mut Report) -> Result<Mode
 /// Refuses a count that the bytes after it cannot hold, or that is beyond the bound.
 pub(crate) fn check_count(input: &Input<'_>, element: &Element) -> Result<(), ModelError> {
     let (bytes, coding) = (input.bytes, input.coding);
-    // The least that a row can take: a lying count is found before anything is made for it.
+    // The fewest bytes of a row: a false count is refused before memory is taken for it.
     let least: usize = match coding {
         Coding::Text => element.properties.len(),
         _ => element.properties.iter().map(|p| p.list.unwrap_or(p.scalar).size()).sum(),
@@ -209,12 +209,12 @@ pub(crate) fn header(bytes: &[u8]) -> Result<(Coding, Vec<Element>, usize), Mode
     Err(fail(Place::line(MAX_HEADER_LINES), "the header does not end"))
 }
 
-/// One row: scalars in the order of the properties (0 for lists), and the list that was asked for.
+/// One row: scalars in the order of the properties (0 for lists), and the list that is wanted.
 #[derive(Debug, Default)]
 pub(crate) struct Row {
     pub(crate) values: Vec<f64>,
     list: Vec<f64>,
-    /// Which property's list is kept.
+    /// Index of the property whose list is kept.
     wanted: Option<usize>,
 }
 
@@ -229,7 +229,7 @@ impl<'a> Input<'a> {
         Self { bytes, at, coding }
     }
 
-    /// Bytes that were not read yet, but for white space at the end.
+    /// Returns the number of unread bytes, without white space at the end.
     pub(crate) fn rest(&self) -> usize {
         self.bytes.get(self.at..).map_or(0, |rest| rest.trim_ascii_end().len())
     }
@@ -272,7 +272,7 @@ impl<'a> Input<'a> {
         Ok(())
     }
 
-    /// The next value; `Err(None)` at the end of the file.
+    /// Reads the next value; `Err(None)` at the end of the file.
     fn scalar(&mut self, kind: Scalar) -> Result<f64, Option<ModelError>> {
         if self.coding == Coding::Text {
             let rest = self.bytes.get(self.at..).ok_or(None)?;
@@ -370,7 +370,7 @@ fn faces(input: &mut Input<'_>, element: &Element, mesh: &mut TriMesh) -> Result
         let Some(corners) = corners else {
             return Err(fail(Place::Item(format!("face {i}")), "it names a vertex below zero"));
         };
-        // A face of fewer than three corners is no area.
+        // A face with fewer than three corners has no area.
         if let Some((&first, others)) = corners.split_first() {
             mesh.triangles.extend(others.windows(2).map(|w| [first, w[0], w[1]]));
         }

@@ -71,14 +71,14 @@ pub fn write_ply(model: &Model, spec: &ExportSpec, mut out: impl Write) -> Resul
     Ok(())
 }
 
-/// The colour that a vertex shows, as sRGB bytes.
+/// Returns the visible colour of a vertex, as sRGB bytes.
 fn color(material: &Material, uv: Option<[f32; 2]>, tint: [f32; 3]) -> [u8; 3] {
     let mut rgb = [0, 1, 2].map(|k| material.base_color[k] * tint[k]);
     if let (Some(texture), Some(uv)) = (&material.texture, uv)
         && texture.width > 0
         && texture.height > 0
     {
-        // Repeated beyond 0 to 1, as glTF's default sampler does.
+        // Repeated beyond 0 to 1, as by glTF's default sampler.
         let at = |x: f32, size: u32| {
             let x = x - x.floor();
             #[expect(

@@ -30,7 +30,7 @@ pub fn write_stl(model: &Model, spec: &ExportSpec, mut out: impl Write) -> Resul
     if model.triangle_count() == 0 && model.vertex_count() > 0 {
         return Err(WriteError::NoTriangles);
     }
-    // Must not begin with `solid`: that marks the text form.
+    // The text must not begin with `solid`, which marks the text form.
     let text = format!("Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit.plural(), spec.up);
     let mut header = [b' '; HEADER];
     header.iter_mut().zip(text.bytes()).for_each(|(h, b)| *h = b);
@@ -130,12 +130,12 @@ fn read_text(bytes: &[u8]) -> Result<Vec<[f32; 3]>, ModelError> {
     Ok(corners)
 }
 
-/// One vertex for all corners at exactly the same place, in the order of their first use.
+/// Merges all corners at exactly the same place into one vertex, in the order of their first use.
 fn weld(corners: &[[f32; 3]]) -> TriMesh {
     let mut mesh = TriMesh::default();
     let mut known: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut index = |p: [f32; 3]| {
-        // -0 and 0 are one place.
+        // -0 and 0 are the same place.
         let key = p.map(|x| (x + 0.0).to_bits());
         *known.entry(key).or_insert_with(|| {
             mesh.positions.push(p);

@@ -25,11 +25,12 @@ pub struct UsdFiles {
 ///
 /// Guaranteed: `metersPerUnit`, `upAxis` and `defaultPrim` are always there; names are identifiers, each once among
 /// its siblings; a part is one `Mesh` (`Points` without triangles) without subdivision, with normals, `primvars:st`,
-/// `primvars:displayColor` and, where the model has them, `primvars:wind` and `primvars:pivot`; a material is one
-/// `UsdPreviewSurface` with its normals, occlusion and roughness, cut out at one half where its texture has holes; the same model gives the same bytes.
-/// Positions are written to a millionth of the largest, texture coordinates to five places, all else at vertices to four.
-/// Not guaranteed: that vertex colours tint textures, for which `UsdPreviewSurface` has no node: they are in
-/// `displayColor`, and colour materials without a texture. Kind and translucency are custom data of the material.
+/// `primvars:displayColor` and, if the model has them, `primvars:wind` and `primvars:pivot`; a material is one
+/// `UsdPreviewSurface` with its normals, occlusion and roughness, and with an opacity threshold of one half if its
+/// texture has holes; the same model gives the same bytes. Positions are written to a millionth of the largest,
+/// texture coordinates to five places, all else at vertices to four. Not guaranteed: that vertex colours tint
+/// textures, for which `UsdPreviewSurface` has no node: they are in `displayColor`, and colour materials without a
+/// texture. Kind and translucency are custom data of the material.
 ///
 /// # Errors
 /// [`WriteError`] for a model that is not sound.
@@ -44,6 +45,29 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
     let stem = file_name(stem, "model");
     let root = identifier(&model.name, "model");
     let mut out = Vec::with_capacity(4096 + 160 * model.vertex_count() + 30 * model.triangle_count());
+    head(&mut out, (&root, model), spec)?;
+    writeln!(out, "def Xform \"{root}\" (")?;
+    writeln!(out, "    assetInfo = {{\n        string name = {}\n    }}", Quoted(&model.name))?;
+    writeln!(out, "    kind = \"component\"\n)\n{{")?;
+    let mut taken = Identifiers::default();
+    let scope = taken.fresh("materials", "materials");
+    let mut textures = TextureFiles::new(&stem);
+    let looks = looks(&mut out, model, &format!("/{root}/{scope}"), &mut textures)?;
+    for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
+        let name = taken.fresh(&part.name, "part");
+        let look = &looks[part.material.index()];
+        prim(&mut out, part, &name, (look, model.material(part).double_sided), None, spec)?;
+    }
+    writeln!(out, "}}")?;
+    Ok(UsdFiles { usda: out, textures: textures.into_files() })
+}
+
+/// Writes the metadata of a layer.
+pub(super) fn head(
+    out: &mut Vec<u8>,
+    (root, model): (&str, &Model),
+    spec: &ExportSpec,
+) -> Result<(), WriteError> {
     let up = match spec.up {
         UpAxis::Y => "Y",
         UpAxis::Z => "Z",
@@ -52,6 +76,7 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
         Unit::Metre => "1",
         Unit::Centimetre => "0.01",
         Unit::Millimetre => "0.001",
+        Unit::Foot => "0.3048",
     };
     writeln!(out, "#usda 1.0\n(\n    defaultPrim = \"{root}\"")?;
     writeln!(out, "    doc = \"Burgeon {}\"", env!("CARGO_PKG_VERSION"))?;
@@ -59,21 +84,24 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
         let [x, y, z] = spec.place(offset);
         writeln!(out, "    customLayerData = {{\n        double3 offset = ({x}, {y}, {z})\n    }}")?;
     }
-    writeln!(out, "    metersPerUnit = {metres}\n    upAxis = \"{up}\"\n)\n")?;
-    writeln!(out, "def Xform \"{root}\" (")?;
-    writeln!(out, "    assetInfo = {{\n        string name = {}\n    }}", Quoted(&model.name))?;
-    writeln!(out, "    kind = \"component\"\n)\n{{")?;
-    let mut taken = Identifiers::default();
-    let scope = taken.fresh("materials", "materials");
-    let mut textures = TextureFiles::new(&stem);
+    Ok(writeln!(out, "    metersPerUnit = {metres}\n    upAxis = \"{up}\"\n)\n")?)
+}
+
+/// Writes the scope `path` with the materials of a model.
+pub(super) fn looks(
+    out: &mut Vec<u8>,
+    model: &Model,
+    path: &str,
+    textures: &mut TextureFiles<'_>,
+) -> Result<Vec<Look>, WriteError> {
     let mut among = Identifiers::default();
     let looks: Vec<Look> = (model.materials.iter().enumerate())
         .map(|(i, m)| {
-            // A part's tint colours a bare material; one that has no colours shows the base colour.
+            // A part's tint colours a material without a texture; a part without colours shows the base colour.
             let users = || model.parts.iter().filter(|p| p.material.index() == i);
             let tinted = m.texture.is_none() && users().any(|p| !p.mesh.colors.is_empty());
             let file = m.texture.as_ref().map(|t| textures.name(t, &m.name)).transpose()?;
-            let path = format!("/{root}/{scope}/{}", among.fresh(&m.name, "material"));
+            let path = format!("{path}/{}", among.fresh(&m.name, "material"));
             let mut map = |of: &Option<std::sync::Arc<mesh::Texture>>, what: &str| {
                 of.as_ref().map(|t| textures.name(t, &format!("{}-{what}", m.name))).transpose()
             };
@@ -81,31 +109,34 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
             Ok(Look { path, file, normal, orm, tinted, shown: shown(m) })
         })
         .collect::<Result<_, WriteError>>()?;
-    writeln!(out, "    def Scope \"{scope}\"\n    {{")?;
+    writeln!(out, "    def Scope \"{}\"\n    {{", path.rsplit('/').next().unwrap_or_default())?;
     for (m, look) in model.materials.iter().zip(&looks) {
-        material(&mut out, m, look)?;
+        material(out, m, look)?;
     }
     writeln!(out, "    }}")?;
-    for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
-        let name = taken.fresh(&part.name, "part");
-        let look = &looks[part.material.index()];
-        prim(&mut out, part, &name, look, model.material(part).double_sided, spec)?;
-    }
-    writeln!(out, "}}")?;
-    Ok(UsdFiles { usda: out, textures: textures.into_files() })
+    Ok(looks)
 }
 
-/// How a material is written.
-struct Look {
+/// Joints that move a mesh.
+pub(super) struct Bound<'a> {
+    /// Path of its skeleton.
+    pub(super) skeleton: &'a str,
+    /// Two joints of each vertex with their shares.
+    pub(super) holds: &'a [[(u16, f32); 2]],
+}
+
+/// Appearance of a material in the file.
+pub(super) struct Look {
     path: String,
-    /// Its texture's file.
+    /// File of its texture.
     file: Option<String>,
-    /// Those of its relief, and of occlusion and roughness.
+    /// File of its normals.
     normal: Option<String>,
+    /// File of its occlusion and roughness.
     orm: Option<String>,
-    /// Vertex colours are its colour.
+    /// Vertex colours give its colour.
     tinted: bool,
-    /// Linear colour that stands for it where materials are not shown.
+    /// Linear colour for viewers that do not show materials.
     shown: [f32; 3],
 }
 
@@ -178,7 +209,7 @@ fn material(out: &mut Vec<u8>, m: &Material, look: &Look) -> Result<(), WriteErr
     Ok(writeln!(out, "        }}\n")?)
 }
 
-/// A node that reads a texture's file.
+/// Writes a node that reads a texture's file.
 fn picture(
     out: &mut Vec<u8>,
     (path, name, file): (&str, &str, &str),
@@ -199,7 +230,7 @@ fn picture(
     Ok(writeln!(out, "            }}")?)
 }
 
-/// A node that hands a column of the mesh on.
+/// Writes a node that passes a column of the mesh on.
 fn reader(out: &mut Vec<u8>, name: &str, kind: &str, column: &str) -> Result<(), WriteError> {
     writeln!(out, "            def Shader \"{name}\"\n            {{")?;
     writeln!(out, "                uniform token info:id = \"UsdPrimvarReader_{kind}\"")?;
@@ -207,29 +238,28 @@ fn reader(out: &mut Vec<u8>, name: &str, kind: &str, column: &str) -> Result<(),
     Ok(writeln!(out, "                {kind} outputs:result\n            }}")?)
 }
 
-fn prim(
+pub(super) fn prim(
     out: &mut Vec<u8>,
     part: &Part,
     name: &str,
-    look: &Look,
-    double_sided: bool,
+    (look, double_sided): (&Look, bool),
+    bound: Option<&Bound<'_>>,
     spec: &ExportSpec,
 ) -> Result<(), WriteError> {
     let mesh = &part.mesh;
     let points: Vec<[f32; 3]> = mesh.positions.iter().map(|&p| spec.point(p)).collect();
     let cloud = mesh.triangles.is_empty();
     let kind = if cloud { "Points" } else { "Mesh" };
-    writeln!(
-        out,
-        "\n    def {kind} \"{name}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{"
-    )?;
+    let schemas =
+        if bound.is_some() { "\"MaterialBindingAPI\", \"SkelBindingAPI\"" } else { "\"MaterialBindingAPI\"" };
+    writeln!(out, "\n    def {kind} \"{name}\" (\n        prepend apiSchemas = [{schemas}]\n    )\n    {{")?;
     if double_sided {
         writeln!(out, "        uniform bool doubleSided = 1")?;
     }
     let (low, high) = points.iter().fold(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), |(low, high), p| {
         ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
     });
-    // A point has a width: a three-hundredth of the whole shows without hiding its neighbours.
+    // A point has a width: a three-hundredth of the whole is visible and does not hide its neighbours.
     let width = if cloud { (0..3).map(|k| high[k] - low[k]).fold(0.0, f32::max) / 300.0 } else { 0.0 };
     write!(out, "        float3[] extent = [")?;
     row(out, &low.map(|x| x - 0.5 * width))?;
@@ -242,21 +272,13 @@ fn prim(
             "        float[] widths = [{width}] (\n            interpolation = \"constant\"\n        )"
         )?;
     } else {
-        write!(out, "        int[] faceVertexCounts = [")?;
-        for i in 0..mesh.triangles.len() {
-            out.extend_from_slice(if i == 0 { b"3" } else { b",3" });
-        }
-        write!(out, "]\n        int[] faceVertexIndices = [")?;
-        for (i, &corner) in mesh.triangles.iter().flatten().enumerate() {
-            if i > 0 {
-                out.push(b',');
-            }
-            digits(out, u64::from(corner), 1);
-        }
-        writeln!(out, "]")?;
+        faces(out, &mesh.triangles, bound.is_some())?;
     }
     writeln!(out, "        rel material:binding = <{}>", look.path)?;
-    columns(out, mesh, &points, look, spec)?;
+    columns(out, mesh, &points, (look, bound.is_some()), spec)?;
+    if let Some(bound) = bound {
+        holds(out, bound)?;
+    }
     if !cloud {
         // Without this every reader would smooth the triangles (Catmull and Clark).
         writeln!(out, "        uniform token subdivisionScheme = \"none\"")?;
@@ -264,16 +286,100 @@ fn prim(
     Ok(writeln!(out, "    }}")?)
 }
 
+/// Share of the vertices of a mesh with two joints, below which each has the larger of the two alone.
+const FEW_SHARED: f64 = 0.01;
+
+/// Writes the joints of each vertex.
+fn holds(out: &mut Vec<u8>, bound: &Bound<'_>) -> Result<(), WriteError> {
+    // Few vertices of thin wood have a second joint, which would cost each vertex room.
+    let second = bound.holds.iter().filter(|h| h[1].1 > 0.0).count();
+    let count = if second as f64 > FEW_SHARED * bound.holds.len() as f64 { 2 } else { 1 };
+    let one = |hold: &[(u16, f32); 2]| {
+        let [a, b] = *hold;
+        if count == 2 { [a, b] } else { [(if b.1 > a.1 { b.0 } else { a.0 }, 1.0), b] }
+    };
+    let each = || bound.holds.iter().flat_map(|hold| one(hold).into_iter().take(count));
+    let joints: Vec<String> = each().map(|(joint, _)| joint.to_string()).collect();
+    let mut shares = Vec::with_capacity(8 * bound.holds.len());
+    for (k, (_, share)) in each().enumerate() {
+        if k > 0 {
+            shares.push(b',');
+        }
+        fixed(&mut shares, share, 3)?;
+    }
+    let each_vertex =
+        format!("(\n            elementSize = {count}\n            interpolation = \"vertex\"\n        )");
+    writeln!(out, "        matrix4d primvars:skel:geomBindTransform = {}", transform([0.0; 3]))?;
+    writeln!(out, "        int[] primvars:skel:jointIndices = [{}] {each_vertex}", joints.join(","))?;
+    write!(out, "        float[] primvars:skel:jointWeights = [")?;
+    out.extend_from_slice(&shares);
+    writeln!(out, "] {each_vertex}")?;
+    Ok(writeln!(out, "        rel skel:skeleton = <{}>", bound.skeleton)?)
+}
+
+/// Formats a matrix that moves to a place.
+pub(super) fn transform([x, y, z]: [f64; 3]) -> String {
+    format!("( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), ({x}, {y}, {z}, 1) )")
+}
+
+/// Writes the corners of the faces; `is_short`: two triangles that share an edge and follow each other are one face of
+/// four corners, which takes a third less room.
+fn faces(out: &mut Vec<u8>, triangles: &[[u32; 3]], is_short: bool) -> Result<(), WriteError> {
+    let (mut counts, mut corners) = (Vec::with_capacity(triangles.len()), Vec::new());
+    let mut rest = triangles;
+    while let [first, after @ ..] = rest {
+        let four = after.first().filter(|_| is_short).and_then(|next| joined(*first, *next));
+        if let Some(four) = four {
+            counts.push(4);
+            corners.extend(four);
+            rest = &after[1..];
+        } else {
+            counts.push(3);
+            corners.extend(*first);
+            rest = after;
+        }
+    }
+    for (name, values) in [("faceVertexCounts", &counts), ("faceVertexIndices", &corners)] {
+        write!(out, "        int[] {name} = [")?;
+        for (i, &value) in values.iter().enumerate() {
+            if i > 0 {
+                out.push(b',');
+            }
+            digits(out, u64::from(value), 1);
+        }
+        writeln!(out, "]")?;
+    }
+    Ok(())
+}
+
+/// Returns the corners of two triangles as one face, if they share an edge.
+fn joined(a: [u32; 3], b: [u32; 3]) -> Option<[u32; 4]> {
+    for k in 0..3 {
+        let [u, v, w] = [a[k], a[(k + 1) % 3], a[(k + 2) % 3]];
+        for j in 0..3 {
+            if b[j] == v && b[(j + 1) % 3] == u && b[(j + 2) % 3] != w {
+                return Some([w, u, b[(j + 2) % 3], v]);
+            }
+        }
+    }
+    None
+}
+
 fn columns(
     out: &mut Vec<u8>,
     mesh: &TriMesh,
     points: &[[f32; 3]],
-    look: &Look,
+    (look, is_short): (&Look, bool),
     spec: &ExportSpec,
 ) -> Result<(), WriteError> {
     let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| spec.direction(unit(n))).collect();
-    column(out, "normal3f[] normals", &normals, Fineness::Places(4))?;
-    column(out, "point3f[] points", points, Fineness::Share)?;
+    let (of_normals, of_points, of_st) = if is_short {
+        (Fineness::Places(2), Fineness::SHORT, Fineness::Places(3))
+    } else {
+        (Fineness::Places(4), Fineness::FINE, Fineness::Places(5))
+    };
+    column(out, "normal3f[] normals", &normals, of_normals)?;
+    column(out, "point3f[] points", points, of_points)?;
     let product = |c: &[f32; 3]| [0, 1, 2].map(|k| share(c[k]) * look.shown[k]);
     if mesh.colors.is_empty() {
         write!(out, "        color3f[] primvars:displayColor = [")?;
@@ -284,32 +390,37 @@ fn columns(
         column(out, "color3f[] primvars:displayColor", &colors, Fineness::Places(4))?;
     }
     let pivots: Vec<[f32; 3]> = mesh.pivots.iter().map(|&p| spec.point(p)).collect();
-    column(out, "point3f[] primvars:pivot", &pivots, Fineness::Share)?;
+    column(out, "point3f[] primvars:pivot", &pivots, Fineness::FINE)?;
     // USD's t points up.
     let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
     let st: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| [finite(uv[0]), 1.0 - finite(uv[1])]).collect();
-    column(out, "texCoord2f[] primvars:st", &st, Fineness::Places(5))?;
+    column(out, "texCoord2f[] primvars:st", &st, of_st)?;
     column(out, "float4[] primvars:wind", &mesh.wind, Fineness::Places(4))
 }
 
-/// How finely the numbers of a column are written: text of all digits of a large tree is twice as long and takes four
-/// times as long.
+/// Precision of the numbers of a column: with all digits, the text of a large tree is twice as long and takes four
+/// times as long to write.
 #[derive(Clone, Copy)]
 enum Fineness {
-    /// So many places after the point.
+    /// This number of decimal places.
     Places(u32),
-    /// To a millionth of the largest of them: a hundredth of a millimetre in a tree of 20 m.
-    Share,
+    /// A share of the largest number.
+    Share(f64),
 }
 
 impl Fineness {
+    /// A hundredth of a millimetre in a tree of 10 m.
+    const FINE: Self = Self::Share(1e-6);
+    /// A tenth of a millimetre in a tree of 10 m.
+    const SHORT: Self = Self::Share(1e-5);
+
     fn places<const N: usize>(self, rows: &[[f32; N]]) -> u32 {
         match self {
             Self::Places(places) => places,
-            Self::Share => {
+            Self::Share(share) => {
                 let largest = rows.iter().flatten().fold(0.0_f64, |m, x| m.max(f64::from(x.abs())));
                 let (mut places, mut step) = (0, 1.0);
-                while step > 1e-6 * largest && places < 12 {
+                while step > share * largest && places < 12 {
                     places += 1;
                     step *= 0.1;
                 }
@@ -319,7 +430,7 @@ impl Fineness {
     }
 }
 
-/// A value at each vertex; nothing where there is none.
+/// Writes a value for each vertex; nothing if there are none.
 fn column<const N: usize>(
     out: &mut Vec<u8>,
     what: &str,
@@ -342,12 +453,12 @@ fn column<const N: usize>(
         out.push(b')');
     }
     let vertex = " (\n            interpolation = \"vertex\"\n        )";
-    // Points are at vertices by their nature.
+    // Points are per vertex by definition.
     Ok(writeln!(out, "]{}", if what.ends_with("points") { "" } else { vertex })?)
 }
 
-/// A number with at most so many places after the point (12 at most), without zeros at the end.
-fn fixed(out: &mut Vec<u8>, x: f32, places: u32) -> Result<(), WriteError> {
+/// Writes a number with at most `places` decimal places (12 at most), without zeros at the end.
+pub(super) fn fixed(out: &mut Vec<u8>, x: f32, places: u32) -> Result<(), WriteError> {
     let whole = 10_u64.pow(places);
     #[expect(clippy::cast_precision_loss, reason = "a power of ten below 2^53")]
     let scaled = (f64::from(x) * whole as f64).round();
@@ -376,7 +487,7 @@ fn fixed(out: &mut Vec<u8>, x: f32, places: u32) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// A whole number with at least so many digits (20 at most).
+/// Writes a whole number with at least `least` digits (20 at most).
 fn digits(out: &mut Vec<u8>, mut n: u64, least: usize) {
     let mut text = [b'0'; 20];
     let mut at = text.len();
@@ -396,11 +507,11 @@ fn row<const N: usize>(out: &mut Vec<u8>, values: &[f32; N]) -> Result<(), Write
     Ok(write!(out, ")")?)
 }
 
-/// The mean colour of a material, linear: what a viewer without materials should show.
+/// Returns the mean colour of a material, linear, for viewers without materials.
 fn shown(m: &Material) -> [f32; 3] {
     let base = m.base_color.map(share);
     let Some(texture) = &m.texture else { return base };
-    // Some 4096 pixels tell as much as all of them.
+    // Some 4096 pixels are enough for a mean.
     let step = (texture.pixels.len() / 4 / 4096).max(1);
     let (mut sum, mut weight) = ([0.0_f64; 3], 0.0_f64);
     for p in texture.pixels.chunks_exact(4).step_by(step).filter(|p| p[3] > 127) {
@@ -414,12 +525,12 @@ fn shown(m: &Material) -> [f32; 3] {
     [0, 1, 2].map(|k| base[k] * mean(k))
 }
 
-/// Identifiers that are each used once.
+/// Makes identifiers distinct.
 #[derive(Default)]
-struct Identifiers(BTreeMap<String, usize>);
+pub(crate) struct Identifiers(BTreeMap<String, usize>);
 
 impl Identifiers {
-    fn fresh(&mut self, wanted: &str, otherwise: &str) -> String {
+    pub(crate) fn fresh(&mut self, wanted: &str, otherwise: &str) -> String {
         let wanted = identifier(wanted, otherwise);
         let numbered = (2_usize..).map(|n| format!("{wanted}_{n}"));
         let name = core::iter::once(wanted.clone()).chain(numbered).find(|n| !self.0.contains_key(n));
@@ -429,8 +540,9 @@ impl Identifiers {
     }
 }
 
-/// A name of ASCII letters, digits and underscores that does not begin with a digit: what every reader of USD takes.
-fn identifier(name: &str, otherwise: &str) -> String {
+/// Returns a name of ASCII letters, digits and underscores that does not begin with a digit: every reader of USD
+/// accepts it.
+pub(crate) fn identifier(name: &str, otherwise: &str) -> String {
     let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = name.trim().chars().map(keep).take(100).collect();
     if name.chars().all(|c| c == '_') {
@@ -443,7 +555,7 @@ fn identifier(name: &str, otherwise: &str) -> String {
 }
 
 /// Text between quotes.
-struct Quoted<'a>(&'a str);
+pub(crate) struct Quoted<'a>(pub(crate) &'a str);
 
 impl fmt::Display for Quoted<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -485,10 +597,21 @@ mod tests {
         assert_eq!(text(0.050_002, 5), "0.05", "zeros within stay");
         assert_eq!(text(0.003, 6), "0.003");
         assert_eq!(text(3e20, 4), "300000000000000000000");
-        assert_eq!([Fineness::Share.places(&[[20.0_f32]]), Fineness::Share.places(&[[0.05_f32]])], [5, 8]);
+        assert_eq!([Fineness::FINE.places(&[[20.0_f32]]), Fineness::FINE.places(&[[0.05_f32]])], [5, 8]);
         let mut out = Vec::new();
         [0, 7, 10, u64::MAX].iter().for_each(|&n| digits(&mut out, n, 1));
         assert_eq!(out, b"071018446744073709551615");
+    }
+
+    #[test]
+    fn triangles_that_share_an_edge_are_one_face() {
+        assert_eq!(joined([0, 1, 2], [0, 2, 3]), Some([1, 2, 3, 0]));
+        assert_eq!(joined([0, 1, 2], [2, 1, 3]), Some([0, 1, 3, 2]));
+        assert_eq!(joined([0, 1, 2], [1, 2, 3]), None, "it faces the other way");
+        let mut out = Vec::new();
+        faces(&mut out, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]], true).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(text.contains("[4,3]") && text.contains("[1,2,3,0,4,5,6]"), "{text}");
     }
 
     #[test]

@@ -1,18 +1,18 @@
 //! USD in one file: a layer and its textures in a zip that is read in place.
 //!
-//! Our own, because what readers of USD ask for (nothing compressed, sizes before the data, each file at a multiple of 64
-//! bytes) is what writers of zips for streams cannot give.
+//! Our own writer, because readers of USD demand what streaming writers of zips cannot give: nothing compressed,
+//! sizes before the data, each file at a multiple of 64 bytes.
 
 use std::io::Write;
 
 use super::usd_write::UsdFiles;
 use crate::error::WriteError;
 
-/// Where the data of each file starts: at a multiple of this.
+/// Alignment of the data of each file, in bytes.
 const ALIGNED: usize = 64;
-/// The time of every entry, so that the same model gives the same bytes: 1 January 1980.
+/// Date of every entry, so that the same model gives the same bytes: 1 January 1980.
 const DATE: u16 = 0x21;
-/// The name of the extra field that fills the room before the data.
+/// Id of the extra field that pads up to the data.
 const FILLING: u16 = 0x1986;
 
 /// A file of the zip.
@@ -20,12 +20,12 @@ struct Entry<'a> {
     name: &'a str,
     data: &'a [u8],
     crc: u32,
-    /// Of its local header.
+    /// Offset of its local header, in bytes.
     at: u32,
 }
 
 impl Entry<'_> {
-    /// What both headers say of it, from the version that is needed to the length of the name.
+    /// Returns the fields that both headers share, from the required version to the length of the name.
     fn facts(&self) -> Option<Vec<u8>> {
         let size = u32::try_from(self.data.len()).ok()?;
         let ascii = self.name.is_ascii();
@@ -43,7 +43,7 @@ impl Entry<'_> {
 }
 
 /// Writes a USD layer and its textures as one USDZ file: a zip without compression, in which the data of every file
-/// starts at a multiple of 64 bytes. `stem`: of the layer, which comes first.
+/// starts at a multiple of 64 bytes. `stem` names the layer, which comes first.
 ///
 /// # Errors
 /// [`WriteError`] of the sink, or for more than 4 GiB, which no such file holds.
@@ -57,7 +57,7 @@ pub(crate) fn write_usdz(files: &UsdFiles, stem: &str, mut out: impl Write) -> R
         let start = u32::try_from(at).map_err(|_e| large())?;
         let entry = Entry { name, data, crc: rawzip::crc32(data), at: start };
         let facts = entry.facts().ok_or_else(large)?;
-        // An extra field has a header of 4 bytes, so that it fills at least those.
+        // An extra field has a header of 4 bytes, so it takes at least those.
         let header = 4 + facts.len() + 2 + name.len();
         let filling = (at + header + 4).next_multiple_of(ALIGNED) - (at + header);
         #[expect(clippy::cast_possible_truncation, reason = "less than 68")]

@@ -1,4 +1,4 @@
-//! [`plant::Plant`] <-> bytes: the text formats in which the field keeps the structure of plants.
+//! [`plant::Plant`] <-> bytes: the text formats that plant scientists use for the structure of plants.
 
 mod mtg;
 mod opf;
@@ -22,7 +22,8 @@ use plant::{AxisId, NodeId, Plant};
 use crate::{ExportSpec, StructureFormat, WriteError};
 
 /// Writes the structure of a sound plant. `shapes`: the meshes of its shapes, which a format with meshes
-/// ([`Room::OrganMeshes`](crate::Room::OrganMeshes)) writes with its organs ([`write_opf`]); the others need none. Cost: linear.
+/// ([`Room::OrganMeshes`](crate::Room::OrganMeshes)) writes with its organs ([`write_opf`]); the others need none.
+/// Cost: linear.
 ///
 /// # Errors
 /// [`WriteError::Io`].
@@ -49,21 +50,21 @@ pub fn write_structure(
     write_structure_with(plant, shapes, &[], format, spec, out)
 }
 
-/// A column of numbers that were computed of a plant's axes and organs, for files that have room for it.
+/// A column of computed numbers of a plant's axes and organs, for files that have room for it.
 ///
-/// A row that is missing, or has none, is left empty. Numbers are written as they are, whatever the unit of the file.
+/// A missing row, or one without a number, stays empty. Numbers are written unchanged, whatever the unit of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AddedColumn {
-    /// Letters and digits, the first a letter.
+    /// Its name: letters and digits, the first a letter.
     pub name: String,
-    /// Of each axis.
+    /// The number of each axis.
     pub axes: Vec<Option<f64>>,
-    /// Of each organ.
+    /// The number of each organ.
     pub organs: Vec<Option<f64>>,
 }
 
-/// As [`write_structure`], with columns of axes and organs beside those that the format has of itself; MTG and OPF have room for
-/// them, other formats leave them out.
+/// Writes as [`write_structure`] does, with further columns of axes and organs; MTG and OPF have room for them, other
+/// formats leave them out.
 ///
 /// # Errors
 /// [`WriteError::Io`].
@@ -83,7 +84,7 @@ pub fn write_structure_with(
     }
 }
 
-/// What a line of a file is about.
+/// Subject of a line of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Subject {
     Axis(usize),
@@ -91,7 +92,7 @@ enum Subject {
 }
 
 impl AddedColumn {
-    /// The number as it is written, to nine digits after the point; empty for none.
+    /// Returns the number as written, to nine decimal places; empty for none.
     fn cell(&self, subject: Option<Subject>) -> String {
         let number = match subject {
             Some(Subject::Axis(row)) => self.axes.get(row),
@@ -103,16 +104,17 @@ impl AddedColumn {
     }
 }
 
-/// A length in metres as the file has it.
+/// Converts a length in metres to the unit of the file.
 fn length(spec: &ExportSpec, metres: f64) -> f64 {
     match spec.unit {
         Unit::Metre => metres,
         Unit::Centimetre => metres * 100.0,
         Unit::Millimetre => metres * 1000.0,
+        Unit::Foot => metres / spec.unit.metres(),
     }
 }
 
-/// A direction as the file has it.
+/// Converts a direction to the axes of the file.
 fn turn(spec: &ExportSpec, v: DVec3) -> DVec3 {
     match spec.up {
         UpAxis::Y => v,
@@ -124,7 +126,7 @@ fn place(spec: &ExportSpec, p: DVec3) -> DVec3 {
     DVec3::from_array(spec.place(p))
 }
 
-/// A plain decimal with `digits` digits after the point at most: readers of MTG split at the `+` of `1e+5`.
+/// Formats a plain decimal with at most `digits` decimal places: readers of MTG split at the `+` of `1e+5`.
 fn decimal(x: f64, digits: usize) -> String {
     let mut text = format!("{x:.digits$}");
     if text.contains('.') {
@@ -133,43 +135,43 @@ fn decimal(x: f64, digits: usize) -> String {
     if text == "-0" { "0".into() } else { text }
 }
 
-/// A length or position to a micrometre.
+/// Formats a length or position to a micrometre.
 fn micrometres(spec: &ExportSpec, x: f64) -> String {
     let digits = match spec.unit {
-        Unit::Metre => 6,
+        Unit::Metre | Unit::Foot => 6,
         Unit::Centimetre => 4,
         Unit::Millimetre => 3,
     };
     decimal(x, digits)
 }
 
-/// What an axis stands on, as a node that is a place of its own: the first node of a borne axis is not, it lies at
-/// its bearer.
+/// Returns the bearer of an axis as a node with a place of its own: the first node of a borne axis has none, it lies
+/// at its bearer.
 fn standing_on(plant: &Plant, mut node: NodeId) -> NodeId {
     loop {
         let axis = plant.axis(plant.nodes.axis[node.index()]);
         match axis.bearer {
-            // Bearers come first, so this goes down to an end.
+            // Bearers come first, so this descends to an end.
             Some(bearer) if axis.nodes.start as usize == node.index() => node = bearer,
             _ => return node,
         }
     }
 }
 
-/// What each node bears, in order: rows of axes and of organs.
+/// The axes and organs that each node bears: their rows, in order.
 struct Borne {
     axes: Vec<(NodeId, AxisId)>,
     organs: Vec<(NodeId, usize)>,
 }
 
 impl Borne {
-    fn of(plant: &Plant) -> Self {
+    fn from_plant(plant: &Plant) -> Self {
         let axes =
             numbered(plant).filter_map(|(id, _)| Some((standing_on(plant, plant.axis(id).bearer?), id)));
         let organs = plant.organs.iter().enumerate();
         let organs = organs.filter_map(|(i, o)| Some((standing_on(plant, o.bearer?), i)));
         let (mut axes, mut organs): (Vec<_>, Vec<_>) = (axes.collect(), organs.collect());
-        // Stable: in the order of the plant at each node.
+        // The sort is stable: at each node, the order is that of the plant.
         base::sort_by_key(&mut axes, |(node, _)| *node);
         base::sort_by_key(&mut organs, |(node, _)| *node);
         Self { axes, organs }
@@ -181,7 +183,7 @@ impl Borne {
     }
 }
 
-/// The axes, and their number on the way up from 1.
+/// Returns the axes, and the number of each on the way up, from 1.
 fn numbered(plant: &Plant) -> impl Iterator<Item = (AxisId, usize)> + '_ {
     (0..plant.axes.len()).map(|i| (AxisId::new(i), i + 1))
 }

@@ -8,7 +8,7 @@ use plant::{AxisId, AxisKind, Organ, OrganKind, Plant, Shape};
 use super::{AddedColumn, Borne, Subject, decimal, length, micrometres, numbered, place, turn};
 use crate::{ExportSpec, WriteError};
 
-/// Symbols of what nodes bear: nodes and the kinds of organs.
+/// Symbols of the borne vertices: nodes and the kinds of organs.
 const BORNE: [char; 13] = ['N', 'L', 'K', 'E', 'D', 'F', 'U', 'B', 'S', 'H', 'C', 'T', 'Q'];
 
 /// Columns of numbers and words after the code.
@@ -31,7 +31,8 @@ const FEATURES: [(&str, &str); 15] = [
 ];
 
 /// Writes a sound plant as MTG text (FORM-A): the plant `P`, its axes `A`, their nodes `N` and organs (`L` leaf, `K`
-/// petal, `D` disc, `E` sepal, `F` floret, `H` anther, `U` fruit, `B` body, `S` stamen, `C` pistil, `T` thorn, `Q` pedicel).
+/// petal, `D` disc, `E` sepal, `F` floret, `H` anther, `U` fruit, `B` body, `S` stamen, `C` pistil, `T` thorn, `Q`
+/// pedicel).
 ///
 /// A node has its position (`XX`, `YY`, `ZZ`) and the diameter there (`TopDia`); the first node of a borne axis has
 /// the diameter at the axis's base, too (`BotDia`), and is the axis's second point: the first lies at the bearer.
@@ -55,16 +56,16 @@ pub fn write_mtg(plant: &Plant, spec: &ExportSpec, out: impl Write) -> Result<()
     write_mtg_with(plant, &[], spec, out)
 }
 
-/// As [`write_mtg`], with more features of axes and organs.
+/// Writes as [`write_mtg`] does, with further features of axes and organs.
 pub(super) fn write_mtg_with(
     plant: &Plant,
     added: &[AddedColumn],
     spec: &ExportSpec,
     out: impl Write,
 ) -> Result<(), WriteError> {
-    let borne = Borne::of(plant);
+    let borne = Borne::from_plant(plant);
     let deepest = plant.axes.iter().map(|a| a.order as usize).max().unwrap_or(0);
-    // The plant, an axis of each order, and what the last of them bear.
+    // Columns of the code: the plant, an axis of each order, and the vertices that the last of them bear.
     let areas = plant.shapes.iter().map(Shape::one_side_m2).collect();
     let mut writer = Writer { plant, added, spec, out, columns: deepest + 3, areas };
     writer.head()?;
@@ -74,14 +75,14 @@ pub(super) fn write_mtg_with(
     }
     let lone = plant.organs.iter().enumerate().filter(|(_, o)| o.bearer.is_none());
     for ((i, organ), k) in lone.zip(plant.axes.len() + 1..) {
-        // An organ must belong to an axis, so each that hangs in the air has one of its own.
+        // An organ must belong to an axis, so each organ without a bearer gets one of its own.
         writer.line(1, &format!("/A{k}"), &Row::kind("none"))?;
         writer.organ(1, "^/", i, organ)?;
     }
     Ok(())
 }
 
-/// The features of one line; empty where there is nothing to say.
+/// Features of one line; empty ones are left out.
 #[derive(Default)]
 struct Row {
     kind: &'static str,
@@ -108,16 +109,16 @@ struct Writer<'a, W> {
     spec: &'a ExportSpec,
     out: W,
     columns: usize,
-    /// Of each shape, one side, at scale 1.
+    /// Area of one side of each shape, square metres, at scale 1.
     areas: Vec<f64>,
 }
 
-/// An axis on the way, and how far it is written.
+/// An axis that is being written, and the progress.
 struct Frame {
     axis: AxisId,
-    /// The next of its nodes.
+    /// Index of its next node.
     node: usize,
-    /// What the last node bears and is still to be written.
+    /// Axes on the last node that are still to be written.
     waiting: Vec<AxisId>,
 }
 
@@ -178,7 +179,8 @@ impl<W: Write> Writer<'_, W> {
         Ok(writeln!(self.out, "{}", text.trim_end_matches('\t'))?)
     }
 
-    /// An axis that stands on the ground and all that it bears; with a stack of its own, as orders may be many.
+    /// Writes an axis that stands on the ground and all that it bears; with an explicit stack, as the orders may be
+    /// many.
     fn tree(&mut self, root: AxisId, borne: &Borne) -> Result<(), WriteError> {
         let mut stack: Vec<Frame> = Vec::new();
         self.open(root, 1, "/", &mut stack)?;

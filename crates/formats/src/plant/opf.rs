@@ -10,10 +10,10 @@ use plant::{AxisId, AxisKind, NodeId, Organ, OrganKind, Plant};
 use super::{AddedColumn, Borne, Subject, decimal, length, micrometres, numbered, place, turn};
 use crate::{ExportSpec, WriteError};
 
-/// Sides of the reference mesh of wood.
+/// Number of sides of the reference mesh of wood.
 const SIDES: u32 = 12;
 
-/// What nodes of the tree may say of themselves, and as what.
+/// Attributes of the nodes of the tree, with their types.
 const ATTRIBUTES: [(&str, &str); 5] = [
     ("Name", "String"),
     ("Length", "Double"),
@@ -25,10 +25,11 @@ const ATTRIBUTES: [(&str, &str); 5] = [
 /// Writes a sound plant as OPF 2.0 (XML): reference meshes, materials, and the tree of the plant: the plant, its axes,
 /// their internodes, and organs, each with a matrix that puts a reference mesh in its place.
 ///
-/// `shapes`: the mesh of each of the plant's shapes at scale 1, in metres, in the coordinates of its organs; an organ whose
-/// mesh is missing or empty has no geometry. An internode is a cylinder along x with the diameters `dDwn` and `dUp` of its
-/// ends, between two nodes of its axis. Lengths are in `spec`'s unit, to a micrometre; areas in its square. What an axis or
-/// organ hangs on is the internode that ends there. Not written: textures, wind, strokes. Cost: linear.
+/// `shapes`: the mesh of each of the plant's shapes at scale 1, in metres, in the coordinates of its organs; an organ
+/// whose mesh is missing or empty has no geometry. An internode is a cylinder along x with the diameters `dDwn` and
+/// `dUp` of its ends, between two nodes of its axis. Lengths are in `spec`'s unit, to a micrometre; areas in its
+/// square. An axis or organ hangs on the internode that ends at its bearer. Not written: textures, wind, strokes.
+/// Cost: linear.
 ///
 /// # Errors
 /// [`WriteError::Io`].
@@ -51,7 +52,7 @@ pub fn write_opf(
     write_opf_with(plant, shapes, &[], spec, out)
 }
 
-/// As [`write_opf`], with more attributes of axes and organs.
+/// Writes as [`write_opf`] does, with further attributes of axes and organs.
 pub(super) fn write_opf_with(
     plant: &Plant,
     shapes: &[TriMesh],
@@ -59,7 +60,7 @@ pub(super) fn write_opf_with(
     spec: &ExportSpec,
     out: impl Write,
 ) -> Result<(), WriteError> {
-    let borne = Borne::of(plant);
+    let borne = Borne::from_plant(plant);
     let areas = plant.shapes.iter().map(plant::Shape::one_side_m2).collect();
     let mut writer = Writer { plant, added, spec, out, areas, looks: Vec::new(), next: 1 };
     writer.head(shapes)?;
@@ -70,7 +71,7 @@ pub(super) fn write_opf_with(
         writer.tree(id, &borne)?;
     }
     for (row, organ) in plant.organs.iter().enumerate().filter(|(_, o)| o.bearer.is_none()) {
-        // An organ must belong to an axis, so each that hangs in the air has one of its own.
+        // An organ must belong to an axis, so each organ without a bearer gets one of its own.
         writer.open("decomp", "Axis", 2)?;
         writer.say("Name", "none")?;
         writer.organ("decomp", row, organ)?;
@@ -80,7 +81,7 @@ pub(super) fn write_opf_with(
     Ok(writeln!(writer.out, "</opf>")?)
 }
 
-/// The class of an organ, its name and its colour before its paint.
+/// Returns the class of an organ, its name and its colour without paint.
 fn organ_class(kind: OrganKind) -> (&'static str, &'static str, [f64; 3]) {
     const GREEN: [f64; 3] = [0.25, 0.45, 0.12];
     match kind {
@@ -105,22 +106,22 @@ struct Writer<'a, W> {
     added: &'a [AddedColumn],
     spec: &'a ExportSpec,
     out: W,
-    /// Of each shape, one side, at scale 1.
+    /// Area of one side of each shape, square metres, at scale 1.
     areas: Vec<f64>,
-    /// Shapes of the plant, as an organ of some kind: the shapes of the file from 1 on. 0 is wood.
+    /// Shapes of the plant with the kind of organ: the shapes of the file from 1 on. 0 is wood.
     looks: Vec<(usize, OrganKind)>,
-    /// The name of the next node of the tree.
+    /// Number of the next node of the tree.
     next: usize,
 }
 
-/// An axis on the way, and how far it is written.
+/// An axis that is being written, and the progress.
 struct Frame {
     axis: AxisId,
-    /// How it was opened.
+    /// Tag of its element.
     tag: &'static str,
-    /// The internode that ends at this of its nodes comes next.
+    /// The internode that ends at the node of this index comes next.
     node: usize,
-    /// What the open internode bears and is still to be written; none where no internode is open.
+    /// Tag of the open internode, and the axes on it that are still to be written; none if no internode is open.
     waiting: Option<(&'static str, Vec<AxisId>)>,
 }
 
@@ -174,7 +175,7 @@ impl<W: Write> Writer<'_, W> {
         Ok(writeln!(self.out, "</attributeBDD>")?)
     }
 
-    /// A reference mesh; its matrix puts it into the unit and axes of the file.
+    /// Writes a reference mesh; its matrix converts it to the unit and axes of the file.
     fn mesh(&mut self, id: usize, mesh: &TriMesh, scales: bool) -> Result<(), WriteError> {
         let out = &mut self.out;
         writeln!(out, "<mesh name=\"\" shape=\"\" Id=\"{id}\" enableScale=\"{scales}\">")?;
@@ -240,7 +241,8 @@ impl<W: Write> Writer<'_, W> {
         Ok(())
     }
 
-    /// `columns`: where the mesh's axes go, already in the unit and axes of the file, as the origin is.
+    /// Writes a geometry. `columns`: the images of the mesh's axes, in the unit and axes of the file, as the origin
+    /// is.
     fn geometry(
         &mut self,
         shape: usize,
@@ -259,7 +261,8 @@ impl<W: Write> Writer<'_, W> {
         Ok(writeln!(self.out, "</mat><dUp>{up}</dUp><dDwn>{down}</dDwn></geometry>")?)
     }
 
-    /// An axis that stands on the ground and all that it bears; with a stack of its own, as orders may be many.
+    /// Writes an axis that stands on the ground and all that it bears; with an explicit stack, as the orders may be
+    /// many.
     fn tree(&mut self, root: AxisId, borne: &Borne) -> Result<(), WriteError> {
         let mut stack: Vec<Frame> = Vec::new();
         self.axis("decomp", root, &mut stack)?;
@@ -286,7 +289,7 @@ impl<W: Write> Writer<'_, W> {
             let start = (frame.node == 1).then(|| axis.node_ids().next()).flatten();
             let mut axes: Vec<AxisId> = Borne::on(&borne.axes, node).collect();
             let mut organs: Vec<usize> = Borne::on(&borne.organs, node).collect();
-            // What hangs on the very first node of an axis: no internode ends there.
+            // Axes and organs on the very first node of an axis come here, because no internode ends there.
             axes.extend(start.into_iter().flat_map(|s| Borne::on(&borne.axes, s)));
             organs.extend(start.into_iter().flat_map(|s| Borne::on(&borne.organs, s)));
             axes.reverse();
@@ -358,7 +361,7 @@ impl<W: Write> Writer<'_, W> {
     }
 }
 
-/// A cylinder along x, from 0 to 1, of diameter 1.
+/// Returns a cylinder along x, from 0 to 1, of diameter 1.
 fn cylinder() -> TriMesh {
     let mut mesh = TriMesh::default();
     for k in 0..SIDES {

@@ -1,4 +1,4 @@
-//! Plant -> quantitative structure model: one cylinder a row, as `TreeQSM` has them.
+//! Plant -> quantitative structure model: one cylinder a row, in the form of `TreeQSM`.
 
 use std::io::Write;
 
@@ -7,17 +7,18 @@ use plant::Plant;
 use super::{decimal, length, micrometres, numbered, place, standing_on, turn};
 use crate::{ExportSpec, WriteError};
 
-/// Writes the shoot of a sound plant as a table of cylinders (CSV with a head), in the words of `TreeQSM` (Raumonen et
-/// al. 2013): `radius`, `length`, `start_x` to `start_z`, `axis_x` to `axis_z` (unit vector), `parent` (row from 1; 0
-/// for what stands on the ground), `extension` (the row that goes on with the branch; 0 at its end), `branch` (from
-/// 1), `BranchOrder` (0 for the trunk), `PositionInBranch` (from 1). After these, which stay where they are, come the
-/// names under which R has the same numbers and without which rTwig refuses a table: `UnmodRadius` (the radius before
-/// a correction), `start.x` to `axis.z`, and `added` (1 for a cylinder that closes a gap: none does). Last come the radii at
-/// both ends of the internode, `start_radius` and `end_radius`, by which [`read_structure`](crate::read_structure) gives the
-/// same nodes back.
+/// Writes the shoot of a sound plant as a table of cylinders (CSV with a head), in the terms of `TreeQSM` (Raumonen
+/// et al. 2013): `radius`, `length`, `start_x` to `start_z`, `axis_x` to `axis_z` (unit vector), `parent` (row from
+/// 1; 0 on the ground), `extension` (the row that continues the branch; 0 at its end), `branch` (from 1),
+/// `BranchOrder` (0 for the trunk), `PositionInBranch` (from 1). After these come the names that R has for the same
+/// numbers and without which rTwig refuses a table: `UnmodRadius` (the radius before a correction), `start.x` to
+/// `axis.z`, and `added` (1 for a cylinder that closes a gap: none does). Last come the radii at both ends of the
+/// internode, `start_radius` and `end_radius`, from which [`read_structure`](crate::read_structure) restores the same
+/// nodes.
 ///
-/// One cylinder for each internode with a length, base first, bearers before what they bear; its radius gives it the
-/// internode's volume. Lengths are in `spec`'s unit. Not written: roots, leaf stalks, organs. Cost: linear.
+/// There is one cylinder for each internode with a length, base first, bearers before the axes that they bear; its
+/// radius gives it the internode's volume. Lengths are in `spec`'s unit. Not written: roots, leaf stalks, organs.
+/// Cost: linear.
 ///
 /// # Errors
 /// [`WriteError::Io`].
@@ -49,7 +50,7 @@ pub fn write_qsm(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
         let points = plant.axis_points(id);
         let last = points.windows(2).rposition(|w| w[0] != w[1]);
         let mut parent = axis.bearer.map_or(0, |b| ends_at[standing_on(plant, b).index()]);
-        // What stands on the foot of its bearer stands on its first cylinder.
+        // An axis on the foot of its bearer hangs on the bearer's first cylinder.
         if let Some(b) = axis.bearer.filter(|_| parent == 0) {
             let below = plant.axis(plant.nodes.axis[standing_on(plant, b).index()]);
             parent = below.node_ids().map(|n| ends_at[n.index()]).find(|r| *r > 0).unwrap_or(0);
@@ -68,7 +69,7 @@ pub fn write_qsm(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
             let axis_of = turn(spec, (w[1] - w[0]).normalize_or_zero());
             let extension = if Some(k) == last { 0 } else { row + 1 };
             let long = length(spec, w[0].distance(w[1]));
-            // A radius to 10 nanometres: twigs are thin.
+            // Radii are written to 10 nanometres, because twigs are thin.
             let [radius, from, to] = [radius, length(spec, r), length(spec, s)].map(|r| decimal(r, 8));
             let [x, y, z] = start.to_array().map(|x| micrometres(spec, x));
             let [u, v, w] = axis_of.to_array().map(|x| decimal(x, 8));

@@ -1,4 +1,4 @@
-//! Plant -> SWC, the plain table of points in which skeletons of trees, roots and neurons travel.
+//! Plant -> SWC, the plain table of points that programs exchange for skeletons of trees, roots and neurons.
 
 use std::io::Write;
 
@@ -10,18 +10,20 @@ use crate::{ExportSpec, WriteError};
 
 /// The first of the types that SWC leaves to its users.
 pub(super) const FIRST_OWN: u32 = 5;
-/// The comment that says what types mean; by it our reader knows that the rows of an axis stand one after another.
+/// The comment that explains the types; it shows our reader that the rows of an axis follow one another.
 pub(super) const TYPES: &str = "type: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root, 10 stub";
-/// What the comment begins with that lists axes of which the first row stands right after the row that bears it: without it
-/// they would be more of their bearer.
+/// Start of the comment that lists axes whose first row follows right after the row that bears them: without it the
+/// reader would take them for a continuation of their bearer.
 pub(super) const TIPS: &str = "begin on the row before:";
 
-/// Writes the axes of a sound plant as SWC: after a head of comments a row for each node, `id type x y z radius parent`,
-/// separated by spaces. The comments say the unit, the axis that points up, and what types mean. `id` counts from 1, bearers come before what they bear, and `parent` is -1 for what stands on the
-/// ground. `type`: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root (0 to 4 are words of neurons). The first node of a borne
-/// axis lies on its bearer and has no row of its own.
+/// Writes the axes of a sound plant as SWC: after comments a row for each node, `id type x y z radius parent`,
+/// separated by spaces. The comments give the unit, the axis that points up, and the meaning of the types. `id`
+/// counts from 1, bearers come before the axes that they bear, and `parent` is -1 on the ground. `type`: 5 branch, 6
+/// twig, 7 stem, 8 petiole, 9 root (0 to 4 are types of neurons). The first node of a borne axis lies on its bearer
+/// and has no row of its own.
 ///
-/// Lengths are in `spec`'s unit, to a micrometre, radii to 10 nanometres. Not written: organs, orders, names. Cost: linear.
+/// Lengths are in `spec`'s unit, to a micrometre, radii to 10 nanometres. Not written: organs, orders, names. Cost:
+/// linear.
 ///
 /// # Errors
 /// [`WriteError::Io`].
@@ -76,7 +78,7 @@ pub fn write_swc(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
     Ok(())
 }
 
-/// The first rows of axes that begin right after the row that bears them.
+/// Returns the first rows of axes that begin right after the row that bears them.
 fn tips(plant: &Plant) -> Vec<String> {
     let mut row_of = vec![0_usize; plant.nodes.position.len()];
     let (mut row, mut tips) = (0, Vec::new());

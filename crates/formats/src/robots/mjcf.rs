@@ -1,4 +1,4 @@
-//! Mechanism -> MJCF, as `MuJoCo` reads it.
+//! Mechanism -> MJCF, for `MuJoCo`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -8,11 +8,12 @@ use mechanics::{Body, Capsule, Mechanism};
 
 use super::{MOST_TURN_RAD, Seen, attribute, number, numbers, triple, turned_inertia};
 
-/// The impedance of a weld, at rest and beyond a millimetre. A fruit sags by some 0.01 mm for each time that it is heavier than
-/// what it hangs on, and by 0.07 mm with `MuJoCo`'s usual 0.95; with 0.999, light limbs become unstable.
+/// Impedance of a weld, at rest and beyond a millimetre, and the width between. A fruit sags by some 0.01 mm times
+/// the ratio of its weight to that of its bearer, and by 0.07 mm with `MuJoCo`'s default of 0.95; with 0.999, light
+/// limbs become unstable.
 const STIFF: &str = "0.99 0.99 0.001";
 
-/// The text of a model. Fruits are bodies that float, each welded to what bears it: the weld can be switched off.
+/// Returns the text of a model. Fruits are floating bodies, each welded to its bearer: the weld can be switched off.
 pub(super) fn text(mechanism: &Mechanism, seen: &[Seen<'_>]) -> String {
     let mut writer = Writer { mechanism, seen, out: String::new() };
     writer.all();
@@ -27,7 +28,7 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn line(&mut self, depth: usize, text: &str) {
-        // Strings take all.
+        // Writing to a string cannot fail.
         let _ = writeln!(self.out, "{:width$}{text}", "", width = 2 * depth);
     }
 
@@ -80,13 +81,13 @@ impl Writer<'_> {
         self.line(1, "<asset>");
         for seen in self.seen {
             let (name, file) = (attribute(&seen.name), attribute(&seen.file));
-            // As a shell: leaves have no volume to take an inertia from.
+            // A shell, because leaves have no volume from which to compute an inertia.
             self.line(2, &format!(r#"<mesh name="{name}" file="{file}" inertia="shell"/>"#));
         }
         self.line(1, "</asset>");
     }
 
-    /// The force at which each stalk breaks, newtons.
+    /// Writes the force at which each stalk breaks, newtons.
     fn breaking(&mut self) {
         let stalks = self.mechanism.bodies.iter().filter_map(|b| Some((b, b.stalk?)));
         let lines: Vec<String> = stalks
@@ -116,13 +117,13 @@ impl Writer<'_> {
     fn weld(&self, body: &Body) -> Option<String> {
         body.stalk?;
         let (name, parent) = (attribute(&body.name), attribute(&self.mechanism.bodies[body.parent?].name));
-        // The anchor is where the fruit hangs, the origin of its body.
+        // The anchor is the fruit's attachment, the origin of its body.
         Some(format!(
             r#"<weld name="stalk_{name}" body1="{parent}" body2="{name}" anchor="0 0 0" solimp="{STIFF}"/>"#
         ))
     }
 
-    /// A body and all that move on it. `frame`: the origin of what it is written in.
+    /// Writes a body and all that move on it. `frame`: the origin of the coordinates in which it is written.
     fn body(&mut self, row: usize, frame: DVec3, depth: usize) {
         let body = &self.mechanism.bodies[row];
         let name = attribute(&body.name);
@@ -182,7 +183,7 @@ fn geom(capsule: &Capsule, origin: DVec3) -> String {
     format!(r#"<geom class="touched" type="capsule" size="{radius}" fromto="{ends}"/>"#)
 }
 
-/// A time step to one digit, never longer.
+/// Rounds a time step down to one digit.
 fn floored(seconds: f64) -> f64 {
     let mut unit = 1.0;
     while unit * 10.0 > seconds && unit > 1e-12 {

@@ -2,6 +2,7 @@
 
 mod mjcf;
 mod urdf;
+mod usd;
 
 use std::collections::BTreeSet;
 
@@ -13,12 +14,12 @@ use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 use crate::model::file_name;
 use crate::{Beside, BesideFile, ExportSpec, ModelFiles, RobotFormat, WriteError, write_stl};
 
-/// What is seen of a body: triangles of one kind of surface.
+/// Visible mesh of a body: triangles of one kind of surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyMesh {
     /// Row of [`Mechanism::bodies`].
     pub body: usize,
-    /// Which surface it is, such as `leaves`: with the body's name that of the mesh.
+    /// Kind of surface, such as `leaves`: together with the body's name it names the mesh.
     pub part: String,
     /// Its mean colour, linear RGB.
     pub color: [f32; 3],
@@ -26,15 +27,16 @@ pub struct BodyMesh {
     pub mesh: TriMesh,
 }
 
-/// Limits of each hinge, radians: a right angle, beyond which no stem goes without breaking.
+/// Limit of each hinge, radians: a right angle, beyond which every stem breaks.
 const MOST_TURN_RAD: f64 = 1.57;
 
-/// Writes a mechanism with its meshes beside it, as binary STL, named `STEM-BODY_PART.stl`, with a number from the second of
-/// the same name on; `stem` is the file's name without its ending.
+/// Writes a mechanism with its meshes as companion files, in binary STL, named `STEM-BODY_PART.stl`, with a number
+/// from the second of the same name on; `stem` is the file's name without its extension.
 ///
-/// Guaranteed: masses, stiffness and places to nine digits. Meshes of less than four corners are left out. MJCF has springs that hold the pose, fruits on welds with the
-/// force at which they break, areas for the wind, and the time step. URDF has no springs of its own: they are for Gazebo; its fruits do not come off.
-/// Cost: linear.
+/// Guaranteed: masses, stiffness and places to nine digits. Meshes with fewer than four corners are left out. MJCF
+/// has springs that hold the pose, fruits on welds with the force at which they break, areas for the wind, and the
+/// time step. URDF itself has no springs: ours are for Gazebo; its fruits do not come off. USD has its meshes in the
+/// file itself, springs as drives of joints with two free angles, and fruits on joints that break. Cost: linear.
 ///
 /// # Errors
 /// [`WriteError`] for meshes that are not sound.
@@ -63,12 +65,17 @@ pub fn robot_files(
     let own = match format {
         RobotFormat::Mjcf => mjcf::text(mechanism, &named),
         RobotFormat::Urdf => urdf::text(mechanism, &named),
+        RobotFormat::Usd => {
+            // Its meshes are in the file itself.
+            let own = usd::text(mechanism, &named);
+            return Ok(ModelFiles { own: own.into_bytes(), beside: Vec::new() });
+        }
     };
     let beside = named.into_iter().map(Seen::file).collect::<Result<_, _>>()?;
     Ok(ModelFiles { own: own.into_bytes(), beside })
 }
 
-/// The meshes that can be written, each with a name that no other has: surfaces of one kind and several colours share a
+/// Returns the meshes that can be written, each with a unique name: surfaces of one kind and several colours share a
 /// part's name, and simulators refuse a mesh or a material that is named twice.
 fn named_meshes<'a>(mechanism: &Mechanism, meshes: &'a [BodyMesh], stem: &str) -> Vec<Seen<'a>> {
     let mut taken = BTreeSet::new();
@@ -76,7 +83,7 @@ fn named_meshes<'a>(mechanism: &Mechanism, meshes: &'a [BodyMesh], stem: &str) -
     for mesh in meshes.iter().filter(|mesh| has_four_corners(&mesh.mesh)) {
         let Some(body) = mechanism.bodies.get(mesh.body) else { continue };
         let name = file_name(&format!("{}_{}", body.name, mesh.part), "mesh");
-        // Some disks take names for one that differ in case alone.
+        // Some file systems treat names that differ only in case as the same.
         let mut names = (1_u32..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
         let Some(name) = names.find(|name| taken.insert(name.to_lowercase())) else { continue };
         all.push(Seen { mesh, origin: body.origin, file: format!("{stem}-{name}.stl"), name });
@@ -84,7 +91,8 @@ fn named_meshes<'a>(mechanism: &Mechanism, meshes: &'a [BodyMesh], stem: &str) -
     all
 }
 
-/// Whether a mesh has four corners at different places: `MuJoCo` refuses one with fewer, which is a sliver nobody sees.
+/// Returns whether a mesh has four corners at different places: `MuJoCo` refuses one with fewer, which is an
+/// invisible sliver.
 fn has_four_corners(mesh: &TriMesh) -> bool {
     let mut places: Vec<[u32; 3]> = Vec::new();
     for p in mesh.positions.iter().map(|p| p.map(f32::to_bits)) {
@@ -102,19 +110,19 @@ fn has_four_corners(mesh: &TriMesh) -> bool {
 struct Seen<'a> {
     mesh: &'a BodyMesh,
     origin: DVec3,
-    /// `BODY_PART`, with a number from the second of the same on.
+    /// `BODY_PART`, with a number from the second of the same name on.
     name: String,
     file: String,
 }
 
 impl Seen<'_> {
-    /// sRGB with an opacity of 1, each 0 to 1.
+    /// Returns sRGB with an opacity of 1, each 0 to 1.
     fn rgba(&self) -> String {
         let [r, g, b] = self.mesh.color.map(|c| number(base::srgb_of_linear(f64::from(c).clamp(0.0, 1.0))));
         format!("{r} {g} {b} 1")
     }
 
-    /// The triangles about the body's origin.
+    /// Returns a file of the triangles, with the body's origin as their origin.
     fn file(self) -> Result<BesideFile, WriteError> {
         let mut mesh = TriMesh {
             positions: self.mesh.mesh.positions.clone(),
@@ -134,19 +142,19 @@ impl Seen<'_> {
     }
 }
 
-/// From the plant's axes to those of robots: +Z up.
+/// Converts the plant's axes to those of robots: +Z up.
 fn turned(v: DVec3) -> DVec3 {
     DVec3::new(v.x, -v.z, v.y)
 }
 
-/// Inertia in the axes of robots: xx, yy, zz, xy, xz, yz.
+/// Returns the inertia in the axes of robots: xx, yy, zz, xy, xz, yz.
 fn turned_inertia(inertia: DMat3) -> [f64; 6] {
     let turn = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z));
     let i = turn * inertia * turn.transpose();
     [i.x_axis.x, i.y_axis.y, i.z_axis.z, i.y_axis.x, i.z_axis.x, i.z_axis.y]
 }
 
-/// A number of nine digits, as short as can be.
+/// Formats a number with nine digits, as short as possible.
 fn number(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {
@@ -167,12 +175,12 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
     values.into_iter().map(number).collect::<Vec<_>>().join(" ")
 }
 
-/// A place or direction of the plant in the axes of robots.
+/// Formats a place or direction of the plant in the axes of robots.
 fn triple(v: DVec3) -> String {
     numbers(turned(v).to_array())
 }
 
-/// A name for an attribute.
+/// Escapes a name for an attribute.
 fn attribute(name: &str) -> String {
     base::escaped_xml(name)
 }
@@ -202,7 +210,7 @@ mod tests {
             mesh: mesh.clone(),
         });
         let wanted = ["base_petals", "base_petals_2", "base_Petals_3"];
-        for format in RobotFormat::ALL {
+        for format in [RobotFormat::Mjcf, RobotFormat::Urdf] {
             let files = robot_files(&mechanism, &meshes, format, "rose").expect("files");
             let names: Vec<&str> = files.beside.iter().map(|f| f.name.as_str()).collect();
             assert_eq!(names, wanted.map(|name| format!("rose-{name}.stl")));
@@ -210,7 +218,7 @@ mod tests {
             for name in wanted {
                 let named = match format {
                     RobotFormat::Mjcf => format!("<mesh name=\"{name}\""),
-                    RobotFormat::Urdf => format!("<material name=\"{name}\""),
+                    _ => format!("<material name=\"{name}\""),
                 };
                 assert_eq!(text.matches(&named).count(), 1, "{text}");
             }

@@ -1,20 +1,23 @@
-//! Mechanism -> URDF, as ROS, Gazebo and Isaac Sim read it.
+//! Mechanism -> URDF, for ROS, Gazebo and Isaac Sim.
 
 use std::fmt::Write as _;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use mechanics::{Body, Capsule, Mechanism, SpringJoint};
 
 use super::{MOST_TURN_RAD, Seen, attribute, number, triple, turned, turned_inertia};
 
-/// Share of a body's mass and inertia that the link between its two hinges has: a link without mass is refused.
+/// Share of a body's mass and inertia that goes to the link between its two hinges: a link without mass is refused.
 const BETWEEN: f64 = 1e-3;
 
-/// Moment and speed that a hinge may have, newton metres and radians a second: beyond what springs of plants reach, as limits
-/// are demanded.
+/// Least inertia of that link, kilogram square metres: readers refuse less than 1e-15.
+const LEAST_INERTIA: f64 = 1e-14;
+
+/// Limits of a hinge's moment and speed, newton metres and radians a second. URDF demands them; springs of plants do
+/// not reach them.
 const LIMITS: [f64; 2] = [1e6, 1e3];
 
-/// The text of a robot, fixed to the link `world`.
+/// Returns the text of a robot, fixed to the link `world`.
 pub(super) fn text(mechanism: &Mechanism, seen: &[Seen<'_>]) -> String {
     let mut writer = Writer { mechanism, seen, out: String::new() };
     let name = mechanism.name.trim();
@@ -29,6 +32,13 @@ pub(super) fn text(mechanism: &Mechanism, seen: &[Seen<'_>]) -> String {
     writer.out
 }
 
+/// Returns the inertia that is alike about all axes and as large as half of the trace: about the largest of a rod. Readers
+/// find the axes of a tensor up to 1e-12 of a kilogram square metre, below which a slender link has none.
+fn even(inertia: DMat3) -> DMat3 {
+    let trace = inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z;
+    DMat3::from_diagonal(DVec3::splat((0.5 * trace).max(LEAST_INERTIA)))
+}
+
 struct Writer<'a> {
     mechanism: &'a Mechanism,
     seen: &'a [Seen<'a>],
@@ -37,7 +47,7 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn line(&mut self, depth: usize, text: &str) {
-        // Strings take all.
+        // Writing to a string cannot fail.
         let _ = writeln!(self.out, "{:width$}{text}", "", width = 2 * depth);
     }
 
@@ -50,7 +60,7 @@ impl Writer<'_> {
             Some(joint) => {
                 let between = format!("{name}_between");
                 self.line(1, &format!(r#"<link name="{between}">"#));
-                self.inertia(body, BETWEEN);
+                self.inertia(body, BETWEEN * body.mass, even(BETWEEN * body.inertia));
                 self.line(1, "</link>");
                 self.link(row, body, 1.0 - BETWEEN);
                 self.hinge(&format!("{name}_a"), (&bearer, &between), body.origin - frame, joint, 0);
@@ -67,7 +77,7 @@ impl Writer<'_> {
 
     fn link(&mut self, row: usize, body: &Body, share: f64) {
         self.line(1, &format!(r#"<link name="{}">"#, attribute(&body.name)));
-        self.inertia(body, share);
+        self.inertia(body, share * body.mass, share * body.inertia);
         for capsule in &body.capsules {
             self.collision(capsule, body.origin);
         }
@@ -81,14 +91,15 @@ impl Writer<'_> {
         self.line(1, "</link>");
     }
 
-    fn inertia(&mut self, body: &Body, share: f64) {
+    /// Writes a mass with its inertia about the centre of a body.
+    fn inertia(&mut self, body: &Body, mass: f64, inertia: DMat3) {
         if body.mass <= 0.0 {
             return;
         }
-        let [xx, yy, zz, xy, xz, yz] = turned_inertia(body.inertia * share).map(number);
+        let [xx, yy, zz, xy, xz, yz] = turned_inertia(inertia).map(number);
         self.line(2, "<inertial>");
         self.line(3, &format!(r#"<origin xyz="{}"/>"#, triple(body.centre - body.origin)));
-        self.line(3, &format!(r#"<mass value="{}"/>"#, number(body.mass * share)));
+        self.line(3, &format!(r#"<mass value="{}"/>"#, number(mass)));
         self.line(
             3,
             &format!(r#"<inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}"/>"#),
@@ -96,7 +107,7 @@ impl Writer<'_> {
         self.line(2, "</inertial>");
     }
 
-    /// A cylinder with a ball at each end: URDF has no capsules.
+    /// Writes a cylinder with a ball at each end: URDF has no capsules.
     fn collision(&mut self, capsule: &Capsule, origin: DVec3) {
         let radius = number(capsule.radius_m);
         let mut ends = vec![capsule.from];
@@ -145,7 +156,7 @@ impl Writer<'_> {
     }
 }
 
-/// Roll and pitch that turn the z axis of a cylinder along a direction of the plant: the axis comes to lie along
+/// Returns the roll and pitch that turn the z axis of a cylinder along a direction of the plant: the axis becomes
 /// (sin p cos r, -sin r, cos p cos r).
 fn lying(direction: DVec3) -> [f64; 2] {
     let d = turned(direction).try_normalize().unwrap_or(DVec3::Z);

@@ -1,27 +1,28 @@
-//! A stand as USD: plants of files of their own in many places.
+//! A stand as USD: plants in their own files, each with many places.
 
 use std::io::Write as _;
 
 use super::tile::{Instance, TreeTable};
 use crate::error::WriteError;
 
-/// A plant that stands in many places.
+/// A plant with many places.
 #[derive(Clone, Debug)]
 pub struct Prototype<'a> {
-    /// Its file, from that of the stand.
+    /// Path of its file, relative to that of the stand.
     pub file: &'a str,
-    /// Where it stands; [`Instance::tree`] is a row of the table.
+    /// Its places; [`Instance::tree`] is a row of the table.
     pub instances: &'a [Instance],
 }
 
-/// The text of a USD layer with a `PointInstancer` over plants of other layers, which it references, in metres, +Y up. What a
-/// tree is (`primvars:row`, `species`, `height_m`, `dbh_m`, `crown_width_m`, `age_years`) is one value a place; `ids` are rows of
-/// the inventory, and the names of species are custom data of the layer.
+/// Returns the text of a USD layer with a `PointInstancer` over plants of other layers, which it references, in
+/// metres, +Y up. The attributes of a tree (`primvars:row`, `species`, `height_m`, `dbh_m`, `crown_width_m`,
+/// `age_years`) have one value for each place; `ids` are rows of the inventory, and the names of species are custom
+/// data of the layer.
 ///
 /// Guaranteed: the same input gives the same bytes.
 ///
 /// # Errors
-/// [`WriteError::Io`] is not to be expected: it is written into memory.
+/// [`WriteError::Io`], which does not occur, because the layer is written into memory.
 pub fn stand_usda(prototypes: &[Prototype<'_>], table: &TreeTable<'_>) -> Result<Vec<u8>, WriteError> {
     let all = || {
         let own = prototypes.iter().enumerate();

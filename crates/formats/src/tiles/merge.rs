@@ -1,14 +1,14 @@
-//! Several glTF documents in one: rows that are equal are there once.
+//! Several glTF documents in one, in which equal rows are stored once.
 
 use serde_json::{Map, Value, json};
 
 use super::shared::{SharedModel, index, list, other};
 use crate::error::WriteError;
 
-/// Compressed views.
+/// The extension for compressed views.
 const COMPRESSION: &str = "EXT_meshopt_compression";
 
-/// A document that grows by models.
+/// A document to which models are added.
 #[derive(Debug, Default)]
 pub(super) struct Merged {
     pub(super) buffers: Vec<Value>,
@@ -24,27 +24,39 @@ pub(super) struct Merged {
     pub(super) required: Vec<String>,
     pub(super) extensions: Map<String, Value>,
     pub(super) bin: Vec<u8>,
-    /// The buffer that compressed columns of the tile itself would fill, and its length.
+    /// The buffer without bytes for the tile's own compressed columns, and its length.
     fallback: Option<(usize, usize)>,
 }
 
 impl Merged {
-    /// Buffer 0 is the tile's own.
+    /// Returns an empty document; buffer 0 is the tile's own.
     pub(super) fn new() -> Self {
         Self { buffers: vec![Value::Null], ..Self::default() }
     }
 
-    /// Adds what a model consists of but its nodes; the place of its first mesh.
+    /// Adds a model without its nodes, and returns the row of its first mesh.
     pub(super) fn add(&mut self, model: &SharedModel) -> Result<usize, WriteError> {
         let root = &model.root;
-        let (buffer, view, accessor) = (self.buffers.len(), self.views.len(), self.accessors.len());
-        self.buffers.extend_from_slice(list(root, "buffers"));
+        let (view, accessor) = (self.views.len(), self.accessors.len());
+        // The new row of each buffer, and its start there.
+        let mut buffers = Vec::new();
+        for row in list(root, "buffers") {
+            let is_empty = row.pointer(&format!("/extensions/{COMPRESSION}/fallback")).is_some();
+            buffers.push(if is_empty {
+                self.without_bytes(index(row, "byteLength").unwrap_or(0))
+            } else {
+                self.buffers.push(row.clone());
+                (self.buffers.len() - 1, 0)
+            });
+        }
         for row in list(root, "bufferViews") {
             let mut row = row.clone();
-            shift(&mut row, "buffer", buffer);
-            if let Some(packed) = row.pointer_mut(&format!("/extensions/{COMPRESSION}")) {
-                shift(packed, "buffer", buffer);
+            let packed = row.pointer_mut(&format!("/extensions/{COMPRESSION}"));
+            if !packed.is_none_or(|packed| lie(packed, &buffers)) || !lie(&mut row, &buffers) {
+                return Err(other("a view names a buffer that is not there"));
             }
+            // Says nothing that accessors do not say.
+            without(&mut row, "target");
             self.views.push(row);
         }
         for row in list(root, "accessors") {
@@ -90,6 +102,8 @@ impl Merged {
                     return Err(other("a mesh names a material that is not there"));
                 }
             }
+            // The species stand in the table; the name of the mesh would be repeated in each tile.
+            without(&mut row, "name");
             self.meshes.push(row);
         }
         for (names, of) in [(&mut self.used, "extensionsUsed"), (&mut self.required, "extensionsRequired")] {
@@ -99,14 +113,14 @@ impl Merged {
         Ok(first)
     }
 
-    /// A view of bytes in the tile's own buffer, eight bytes aligned as tables ask.
+    /// Adds a view of bytes in the tile's own buffer, aligned to eight bytes as tables demand.
     pub(super) fn view(&mut self, bytes: &[u8]) -> usize {
         let start = self.append(bytes);
         self.views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": bytes.len() }));
         self.views.len() - 1
     }
 
-    /// Where bytes begin in the tile's own buffer.
+    /// Appends bytes to the tile's own buffer, and returns where they begin.
     pub(super) fn append(&mut self, bytes: &[u8]) -> usize {
         let start = self.bin.len();
         self.bin.extend_from_slice(bytes);
@@ -114,7 +128,8 @@ impl Merged {
         start
     }
 
-    /// A place of so many bytes in a buffer that has none: what a compressed view stands for. Its buffer and where it begins.
+    /// Reserves `length` bytes in the buffer without bytes, for a compressed view. Returns the buffer and where they
+    /// begin.
     pub(super) fn without_bytes(&mut self, length: usize) -> (usize, usize) {
         let (buffer, start) = self.fallback.unwrap_or_else(|| {
             self.buffers.push(Value::Null);
@@ -129,7 +144,7 @@ impl Merged {
         self.accessors.len() - 1
     }
 
-    /// Takes the files that it names into its own buffer.
+    /// Embeds the files that the document names in its own buffer.
     pub(super) fn embed(
         &mut self,
         open: &dyn Fn(&str) -> Result<Vec<u8>, WriteError>,
@@ -143,21 +158,16 @@ impl Merged {
                 self.buffers.push(buffer);
             }
         }
-        // The tile's own stays first; those without bytes follow.
+        // The tile's own buffer stays first; those without bytes follow.
         let rest: Vec<usize> = (1..self.buffers.len()).filter(|&b| places[b].is_none()).collect();
         let now = |buffer: usize| rest.iter().position(|&b| b == buffer).map_or(0, |k| k + 1);
         self.fallback = self.fallback.map(|(buffer, length)| (now(buffer), length));
-        let lie = |row: &mut Value| {
-            let Some(buffer) = index(row, "buffer") else { return };
-            if let Some(start) = places.get(buffer).copied().flatten() {
-                row["byteOffset"] = json!(start + index(row, "byteOffset").unwrap_or(0));
-            }
-            row["buffer"] = json!(now(buffer));
-        };
+        let moves: Vec<(usize, usize)> =
+            (0..).zip(&places).map(|(buffer, place)| (now(buffer), place.unwrap_or(0))).collect();
         for row in &mut self.views {
-            lie(row);
+            lie(row, &moves);
             if let Some(packed) = row.pointer_mut(&format!("/extensions/{COMPRESSION}")) {
-                lie(packed);
+                lie(packed, &moves);
             }
         }
         let mut k = 0;
@@ -175,10 +185,10 @@ impl Merged {
         Ok(())
     }
 
-    /// The whole document.
+    /// Returns the whole document.
     pub(super) fn document(mut self, name: &str) -> (Value, Vec<u8>) {
         if self.bin.is_empty() {
-            // Without bytes of its own a document has no buffer of its own, and none of its views names it.
+            // A document with no bytes gets a buffer of eight, to which none of its views refers.
             self.bin.resize(8, 0);
         }
         self.buffers[0] = json!({ "byteLength": self.bin.len() });
@@ -219,19 +229,39 @@ impl Merged {
     }
 }
 
-/// Names an extension once.
+/// Adds the name of an extension, once.
 pub(super) fn name_once(names: &mut Vec<String>, word: &str) {
     if !names.iter().any(|n| n == word) {
         names.push(word.to_owned());
     }
 }
 
-/// The place of a row that is there once.
+/// Returns the index of a row, which it adds if it is new.
 fn once(rows: &mut Vec<Value>, row: Value) -> usize {
     rows.iter().position(|r| *r == row).unwrap_or_else(|| {
         rows.push(row);
         rows.len() - 1
     })
+}
+
+/// Gives a view the new place of its buffer; false if there is none.
+fn lie(row: &mut Value, buffers: &[(usize, usize)]) -> bool {
+    let place = index(row, "buffer").and_then(|buffer| buffers.get(buffer));
+    let Some((buffer, start)) = place else { return false };
+    let start = start + index(row, "byteOffset").unwrap_or(0);
+    row["buffer"] = json!(buffer);
+    if start > 0 {
+        row["byteOffset"] = json!(start);
+    } else {
+        without(row, "byteOffset");
+    }
+    true
+}
+
+fn without(row: &mut Value, key: &str) {
+    if let Some(fields) = row.as_object_mut() {
+        fields.remove(key);
+    }
 }
 
 fn shift(row: &mut Value, key: &str, by: usize) {
@@ -240,7 +270,7 @@ fn shift(row: &mut Value, key: &str, by: usize) {
     }
 }
 
-/// Gives a row's `key`, if it has one, its new place; false if there is none.
+/// Replaces a row's `key`, if it has one, by its new index; returns false if there is none.
 fn moved(row: &mut Value, key: &str, places: &[usize]) -> bool {
     let Some(at) = index(row, key) else { return true };
     let Some(place) = places.get(at) else { return false };
@@ -248,7 +278,7 @@ fn moved(row: &mut Value, key: &str, places: &[usize]) -> bool {
     true
 }
 
-/// Gives every texture that a material names its new place: `index` stands for a texture wherever it is in one.
+/// Replaces every texture of a material by its new index: wherever `index` occurs in one, it refers to a texture.
 fn retexture(value: &mut Value, places: &[usize]) -> bool {
     match value {
         Value::Object(fields) => fields.iter_mut().all(|(key, value)| {

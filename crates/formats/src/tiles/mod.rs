@@ -10,8 +10,8 @@
 //! | `tileset` | the tree of tiles with their boxes and errors |
 //! | `instancer` | the same stand as USD |
 //!
-//! glTF has +Y up and 3D Tiles have +Z up: a reader turns the content of a tile by a quarter, (x, y, z) to (x, -z, y). Boxes of
-//! [`tileset_json`] are turned here, places in tiles are not.
+//! glTF has +Y up and 3D Tiles have +Z up: a reader turns the content of a tile by a quarter, (x, y, z) to (x, -z,
+//! y). Boxes of [`tileset_json`] are turned here, places in tiles are not.
 
 mod instancer;
 mod merge;

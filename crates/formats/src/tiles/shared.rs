@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 use crate::error::WriteError;
 use crate::model::{BesideFile, ModelFiles, decode_uri, encoded};
 
-/// What sixteen bits count to: positions of packed meshes are normalised.
+/// Largest number of sixteen bits: positions of packed meshes are normalised.
 const MOST: f64 = 65_535.0;
-/// `UNSIGNED_SHORT` of glTF.
+/// Component type `UNSIGNED_SHORT` of glTF.
 const U16: u64 = 5123;
-/// Digits of a digest that name a picture.
+/// Number of digits of a digest in a picture's name.
 const DIGITS: usize = 16;
 
-/// A mesh of a shared model, and the cube in which its positions are.
+/// A mesh of a shared model, and the cube that its positions fill.
 #[derive(Clone, Debug)]
 pub(super) struct SharedPart {
     pub(super) mesh: usize,
@@ -25,7 +25,7 @@ pub(super) struct SharedPart {
     pub(super) size: f64,
 }
 
-/// A model that tiles name and do not hold: its glTF document, with where its buffer and pictures lie.
+/// A model to which tiles refer: its glTF document, with the places of its buffer and pictures.
 #[derive(Clone, Debug)]
 pub struct SharedModel {
     pub(super) root: Value,
@@ -35,8 +35,9 @@ pub struct SharedModel {
 }
 
 impl SharedModel {
-    /// Reads the glTF text of one plant as [`gltf_files`](crate::gltf_files) writes it, plain or packed, without levels,
-    /// instances and joints. `folder` leads from a tile to the folder of its files and ends with `/`; empty for the same folder.
+    /// Reads the glTF text of one plant from [`gltf_files`](crate::gltf_files), plain or packed, without levels,
+    /// instances and joints. `folder` leads from a tile to the folder of its files and ends with `/`; empty for the
+    /// same folder.
     ///
     /// # Errors
     /// [`WriteError::Io`] for a document of another form.
@@ -66,12 +67,12 @@ impl SharedModel {
         Ok(shared)
     }
 
-    /// The box around it, metres, +Y up; empty for a model without triangles.
+    /// Returns its bounding box, metres, +Y up; empty for a model without triangles.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Its triangles.
+    /// Returns the number of its triangles.
     pub fn triangles(&self) -> u64 {
         self.triangles
     }
@@ -98,8 +99,8 @@ impl SharedModel {
     }
 }
 
-/// Gives the pictures of a plant's files names that follow from their bytes, so that plants of one species share them; names
-/// begin with `stem`.
+/// Renames the pictures of a plant's files after their bytes, so that plants of one species share them; names begin
+/// with `stem`.
 ///
 /// # Errors
 /// [`WriteError::Io`] for files that [`gltf_files`](crate::gltf_files) did not write.
@@ -139,12 +140,12 @@ pub(super) fn other(what: &str) -> WriteError {
     WriteError::Io(io::Error::other(what.to_owned()))
 }
 
-/// The rows of a list of a document.
+/// Returns the rows of a list of a document.
 pub(super) fn list<'a>(of: &'a Value, name: &str) -> &'a [Value] {
     of.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
 }
 
-/// A number of a row.
+/// Returns a number of a row.
 pub(super) fn index(row: &Value, name: &str) -> Option<usize> {
     usize::try_from(row.get(name)?.as_u64()?).ok()
 }

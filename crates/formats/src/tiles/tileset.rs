@@ -5,48 +5,48 @@ use glam::{DVec2, DVec3};
 use mesh::Bounds;
 use serde_json::{Value, json};
 
-/// Boxes are written to this, metres, outwards.
+/// Precision of written boxes, metres; they are rounded outwards.
 const STEP_M: f64 = 0.01;
 
-/// Half axes of the earth's ellipsoid, metres (WGS 84).
+/// Semi-major axis of the earth's ellipsoid, metres (WGS 84).
 const EQUATOR_M: f64 = 6_378_137.0;
 /// Its first eccentricity, squared (WGS 84).
 const ECCENTRICITY: f64 = 6.694_379_990_141_316e-3;
 
-/// A tile and those that take its place nearer by.
+/// A tile and the finer tiles that replace it nearby.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileNode {
-    /// Box around all that it and those below it show, metres, +Y up.
+    /// Bounding box of it and all below it, metres, +Y up.
     pub bounds: Bounds,
-    /// What is lost by showing it rather than those below it, metres; 0 for the finest.
+    /// Error of showing it instead of the tiles below, metres; 0 for the finest.
     pub geometric_error_m: f64,
-    /// Its file, from that of the tileset.
+    /// Path of its file, relative to that of the tileset.
     pub content: String,
-    /// Those that take its place.
+    /// The tiles that replace it.
     pub children: Vec<Self>,
 }
 
 impl TileNode {
-    /// Itself and all below it.
+    /// Returns the number of tiles: itself and all below it.
     pub fn count(&self) -> usize {
         1 + self.children.iter().map(Self::count).sum::<usize>()
     }
 }
 
-/// What a tileset says of itself.
+/// Contents of a tileset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tileset<'a> {
     /// The coarsest tile.
     pub root: &'a TileNode,
-    /// What is lost where nothing is shown, metres.
+    /// Error of showing nothing, metres.
     pub geometric_error_m: f64,
-    /// Where the origin stands on the earth, from [`earth_frame`]; none for a place of its own.
+    /// Frame of the origin on the earth, from [`earth_frame`]; none for a local place.
     pub transform: Option<[f64; 16]>,
     /// Place of the origin in the coordinates of the inventory: easting, height, northing in metres.
     pub origin_m: DVec3,
 }
 
-/// The text of `tileset.json`, 3D Tiles 1.1: explicit tiles with boxes, `REPLACE`, +Z up.
+/// Returns the text of `tileset.json`, 3D Tiles 1.1: explicit tiles with boxes, `REPLACE`, +Z up.
 ///
 /// Guaranteed: the same input gives the same bytes.
 pub fn tileset_json(tileset: &Tileset<'_>) -> Vec<u8> {
@@ -76,7 +76,7 @@ fn tile(node: &TileNode) -> Value {
     let turn = |p: DVec3| DVec3::new(p.x, -p.z, p.y);
     let (centre, half) = (turn(low + high) * 0.5, (high - low) * 0.5);
     let centre = centre.to_array().map(rounded);
-    // As much larger as the middle may have moved.
+    // Larger by as much as rounding may have moved the centre.
     let half = DVec3::new(half.x, half.z, half.y).to_array().map(|h| rounded(h + 2.0 * STEP_M));
     let [cx, cy, cz] = centre;
     let [hx, hy, hz] = half;
@@ -91,14 +91,15 @@ fn tile(node: &TileNode) -> Value {
     out
 }
 
-/// To whole steps, so that few digits are written.
+/// Rounds to whole steps, so that few digits are written.
 fn rounded(x: f64) -> f64 {
     let steps = 1.0 / STEP_M;
     (x * steps).round() / steps
 }
 
-/// The frame of east, north and up at a place of the earth, as 3D Tiles write transforms (column by column, earth-centred
-/// coordinates of WGS 84). `place`: longitude and latitude in degrees, -180 to 180 and -90 to 90; `height_m` above the ellipsoid.
+/// Returns the frame of east, north and up at a place of the earth, as 3D Tiles write transforms (column by column,
+/// earth-centred coordinates of WGS 84). `place`: longitude and latitude in degrees, -180 to 180 and -90 to 90;
+/// `height_m` above the ellipsoid.
 ///
 /// ```
 /// let frame = formats::earth_frame(glam::DVec2::new(0.0, 0.0), 0.0);

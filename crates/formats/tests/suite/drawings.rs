@@ -167,13 +167,13 @@ fn drawings_of_our_own_are_read_with_their_times_and_with_labels() {
     }
 }
 
-/// How many drawings a file holds, each with more than a point, and with times or without.
+/// Returns the number of drawings in a file, each with more than one point, and with or without times.
 fn every_drawing(path: &std::path::Path, timed: bool) -> usize {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("opens"));
     let mut count = 0;
     for read in read_drawings(file, DrawingFormat::Ndjson, "d") {
         let read = read.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let info = DrawingSummary::of(&read.drawing, &read.warnings);
+        let info = DrawingSummary::from_drawing(&read.drawing, &read.warnings);
         assert!(info.points > 1 && info.not_finite == 0, "{info:?}");
         // Raw drawings have times; the labels in the third row of the others are none.
         assert_eq!(info.times, timed, "{}: {}", path.display(), info.name);
@@ -269,7 +269,7 @@ fn svg_keeps_layers_widths_and_points() {
     };
     let drawing = Drawing {
         name: "a < b".into(),
-        // On the sheet, then from below upwards; what is hidden last.
+        // Strokes on the sheet, then from below upwards; hidden ones last.
         strokes: vec![
             stroke(1, None, false),
             stroke(2, Some("leaf contour \"A\""), false),

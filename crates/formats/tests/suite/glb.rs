@@ -270,7 +270,8 @@ fn packed_files_are_small_and_come_back_as_they_were() {
         assert_eq!(back.validate().collect::<Vec<_>>(), []);
         for (a, b) in m.parts.iter().zip(&back.parts) {
             assert_eq!(a.name, b.name);
-            // Compressed: normals to a degree, texture coordinates in steps of a 512th, positions of an 8,192th of the size.
+            // Compressed: normals to a degree, texture coordinates in steps of a 512th, positions of an 8,192th of
+            // the size.
             let compressed = packing == Packing::Compressed;
             let (normal, uv, position) = if compressed { (0.0175, 1e-3, 1e-4) } else { (0.01, 2e-4, 2e-5) };
             let near = |x: &[f32], y: &[f32], off: f32| x.iter().zip(y).all(|(x, y)| (x - y).abs() <= off);
@@ -459,7 +460,7 @@ fn joints_move_vertices_as_the_rig_says() {
     write_glb_rigged(&tree, &rig, &mut PngCache::new(), &mut glb).expect("writes");
     let j = json_of(&glb);
     let of = |v: &serde_json::Value| v.as_u64().expect("a row") as usize;
-    // What moves by joints stands at the top of the scene and nowhere else.
+    // Skinned meshes stand at the top of the scene and nowhere else.
     let tops = j["scenes"][0]["nodes"].as_array().expect("nodes").clone();
     assert_eq!(tops.len(), 1 + tree.parts.len());
     let part = &j["nodes"][of(&tops[1])];
@@ -490,4 +491,32 @@ fn joints_move_vertices_as_the_rig_says() {
     let short = Rig { seconds: vec![0.0, 1.0], ..rig };
     let refused = write_glb_rigged(&tree, &short, &mut PngCache::new(), &mut Vec::new());
     assert!(matches!(refused, Err(formats::WriteError::Rig)));
+}
+
+#[test]
+fn levels_and_shapes_are_named_nodes_and_wind_is_in_sets_of_coordinates() {
+    use formats::{NamedNodes, write_glb_nodes};
+    let fine = carried();
+    let mut coarse = fine.clone();
+    coarse.parts.truncate(1);
+    let shape = grid(1);
+    let levels = vec![("oak_LOD0".to_owned(), &fine), ("oak_LOD1".to_owned(), &coarse)];
+    let shapes = vec![("oak_collider".to_owned(), shape)];
+    let mut glb = Vec::new();
+    let nodes = NamedNodes { name: "oak".into(), levels, shapes };
+    write_glb_nodes(&nodes, &mut PngCache::new(), &mut glb).expect("writes");
+    let j = json_of(&glb);
+    let names: Vec<&str> =
+        j["nodes"].as_array().expect("nodes").iter().filter_map(|n| n["name"].as_str()).collect();
+    assert_eq!(names, ["oak", "oak_LOD0", "oak_LOD1", "oak_collider"]);
+    assert_eq!(j["nodes"][0]["children"], serde_json::json!([1, 2, 3]));
+    assert_eq!(j["materials"].as_array().map(Vec::len), Some(fine.materials.len()), "levels share materials");
+    assert!(j["meshes"][2]["primitives"][0].get("material").is_none(), "a shape has none");
+    let attributes = &j["meshes"][0]["primitives"][0]["attributes"];
+    assert_eq!(attributes["TEXCOORD_1"], attributes["TEXCOORD_0"]);
+    let mesh = &fine.parts[0].mesh;
+    let [pair, last] =
+        [floats(&glb, &j, &attributes["TEXCOORD_2"]), floats(&glb, &j, &attributes["TEXCOORD_5"])];
+    assert_eq!(pair[..2], mesh.wind[0][..2]);
+    assert_eq!(last[..2], [mesh.pivots[0][2], 1.0]);
 }

@@ -10,11 +10,12 @@ use geom::KdTree2;
 use glam::DVec2;
 use leaf::{Leaf, LeafSpec, VeinGraph};
 
-/// Pixels of the picture a cell; and the disc, in cells, that closes the meshes of the network.
+/// Side of a cell, in pixels of the picture.
 const CELL: f64 = 2.0;
+/// Radius of the disc, in cells, that closes the meshes of the network.
 const DISC: i32 = 9;
 
-/// What closes round the drawn veins: its area in square pixels, and its edge.
+/// Returns the area in square pixels, and the edge, of the closed region around the drawn veins.
 fn closed(graph: &VeinGraph) -> (f64, Vec<DVec2>) {
     let (lo, hi) =
         graph.nodes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
@@ -36,7 +37,7 @@ fn closed(graph: &VeinGraph) -> (f64, Vec<DVec2>) {
     let beside = |(x, y): (i32, i32)| {
         [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)].into_iter().filter(|&c| inside(c))
     };
-    // Everything within a disc of what is on, from its edge.
+    // Adds everything within a disc of the set cells, from their edge.
     let grown = |on: &[bool]| {
         let mut out = on.to_vec();
         for (x, y) in all().filter(|&c| on[row(c)] && beside(c).any(|d| !on[row(d)])) {
@@ -51,7 +52,7 @@ fn closed(graph: &VeinGraph) -> (f64, Vec<DVec2>) {
     };
     let empty: Vec<bool> = grown(&veins).iter().map(|on| !on).collect();
     let free = grown(&empty);
-    // What is not reached from the corner is leaf.
+    // Cells that are not reached from the corner are leaf.
     let mut outside = vec![false; free.len()];
     let mut open = vec![(0, 0)];
     while let Some(c) = open.pop() {
@@ -104,7 +105,7 @@ fn a_measured_network_keeps_its_teeth_and_its_veins() {
     let picture = |p: DVec2| margin[0] + turn.rotate(p - a);
     let own: Vec<DVec2> = blade.rim.iter().map(|r| picture(r.place.truncate())).collect();
     assert!(apart(&own, &margin).0 < 0.01, "the blade ends where the margin is");
-    // Of a leaf of 60 mm.
+    // Scaled to a leaf of 60 mm.
     let mm = 60.0 / marks.length();
     let (area, edge) = closed(&graph);
     let seven = {
@@ -135,7 +136,7 @@ fn a_measured_network_keeps_its_teeth_and_its_veins() {
     }
     let [own, seven] = found[..] else { panic!("two") };
     assert!(own.0.abs() < 0.02 && own.1 < 0.1, "{own:?}");
-    // What hangs with no vein of the leaf may lie outside.
+    // Veins that are not connected with the leaf's may lie outside.
     assert!(own.2 > 0.985, "{own:?}");
     assert!(own.1 < 0.5 * seven.1, "{own:?} {seven:?}");
 }

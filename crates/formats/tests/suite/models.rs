@@ -1,4 +1,4 @@
-//! What is written comes back the same.
+//! Written files read back the same.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
 
 use crate::missing;
@@ -141,7 +141,7 @@ fn names_beside_a_model_are_of_any_script_and_differ() {
     let stems = FileStems { model: "a", textures: "a-" };
     let files = obj_files(&m, stems, &ExportSpec::default()).expect("writes");
     assert_eq!(files.mtl_name, "a.mtl");
-    // A disk that does not tell case apart keeps both.
+    // Names that differ only in case stay distinct.
     let names: Vec<&str> = files.textures.iter().map(|t| t.0.as_str()).collect();
     assert_eq!(names, ["a--Leaf.png", "a--leaf-2.png"]);
     let mtl = String::from_utf8(files.mtl).expect("text");
@@ -337,7 +337,7 @@ fn wind_comes_back_and_is_missed_where_there_is_no_room() {
     let mut glb = Vec::new();
     write_glb(&m, &mut glb).expect("writes");
     assert_eq!(read(&glb, ModelFormat::Glb, &ExportSpec::default()), m);
-    assert!(ModelSummary::of(&m, &[]).parts.iter().all(|p| p.wind));
+    assert!(ModelSummary::from_model(&m, &[]).parts.iter().all(|p| p.wind));
     for format in [ModelFormat::Obj, ModelFormat::Ply, ModelFormat::Stl] {
         let mut report = Report::default();
         write_model(&m, format, &ExportSpec::default(), Vec::new(), &mut report).expect("writes");
@@ -356,7 +356,7 @@ fn wind_of_other_programs_is_left_out() {
     m.parts[0].mesh.wind = vec![[0.25; 4]; n];
     let mut glb = Vec::new();
     write_glb(&m, &mut glb).expect("writes");
-    // What they keep there is beyond our 0 to 1.
+    // A value of another program, beyond our 0 to 1.
     let ours = [0.25_f32; 4].map(f32::to_le_bytes).concat();
     let at = glb.windows(16).rposition(|w| w == ours).expect("wind");
     glb[at..at + 4].copy_from_slice(&7.0_f32.to_le_bytes());
@@ -450,7 +450,7 @@ fn samples_for_readers_of_usd() {
 
 #[test]
 fn the_summary_says_what_is_there() {
-    let info = ModelSummary::of(&model(), &[]);
+    let info = ModelSummary::from_model(&model(), &[]);
     assert_eq!((info.parts.len(), info.materials[0].texture, info.vertices), (3, Some([16, 8]), 125));
     assert_eq!((info.min, info.unit, info.warnings.len()), ([0.0; 3], "m", 0));
     assert!(serde_json::to_string(&info).expect("JSON").contains("\"kind\":\"leaf\""));

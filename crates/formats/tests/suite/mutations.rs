@@ -161,7 +161,7 @@ fn drawings(format: DrawingFormat, bytes: &[u8]) -> bool {
         match read {
             Ok(read) => {
                 good += 1;
-                let info = DrawingSummary::of(&read.drawing, &read.warnings);
+                let info = DrawingSummary::from_drawing(&read.drawing, &read.warnings);
                 assert!(info.strokes > 0, "a drawing without strokes is an error");
                 write_drawing(&read.drawing, std::io::sink()).expect("writes what it read");
             }
@@ -178,7 +178,11 @@ fn models(format: ModelFormat, bytes: &[u8]) -> bool {
         Ok(m) => {
             let bad = m.validate().find(|f| !matches!(f, mesh::MeshFault::Degenerate(_)));
             assert_eq!(bad, None, "what was read is sound");
-            assert_eq!(ModelSummary::of(&m, &report.warnings).triangles, m.triangle_count(), "all counted");
+            assert_eq!(
+                ModelSummary::from_model(&m, &report.warnings).triangles,
+                m.triangle_count(),
+                "all counted"
+            );
             write_glb(&m, std::io::sink()).expect("writes what it read");
             true
         }

@@ -83,7 +83,7 @@ proptest! {
         let size = if cm { 100.0 } else { 1.0 };
         let file = written(&plant, &shapes, &spec);
         let near = |a: DVec3, b: DVec3| a.distance(b) < 2e-6 * size * (1.0 + b.length() / size);
-        // Every node has a name of its own, and hangs on what comes before it.
+        // Every node has a name of its own, and hangs on an earlier one.
         let mut ids: Vec<u32> = file.nodes.iter().map(|n| n.id).collect();
         ids.sort_unstable();
         ids.dedup();

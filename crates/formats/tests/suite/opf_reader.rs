@@ -17,7 +17,7 @@ pub(crate) struct Mesh {
 #[derive(Debug)]
 pub(crate) struct Node {
     pub(crate) class: String,
-    /// `/` for a part, `<` for what follows, `+` for a branch.
+    /// `/` for a part, `<` for a successor, `+` for a branch.
     pub(crate) edge: char,
     pub(crate) scale: u32,
     pub(crate) id: u32,

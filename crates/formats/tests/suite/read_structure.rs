@@ -100,7 +100,7 @@ proptest! {
         };
         let all = [AxisKind::Branch, AxisKind::Twig, AxisKind::Stem, AxisKind::Petiole, AxisKind::Root, AxisKind::Stub];
         let p = tree(seed, axes, &all, 1);
-        // What is borne at the very foot may as well be the stem: a table of cylinders or points does not tell.
+        // An axis on the very foot may as well be the stem: a table of cylinders or points does not distinguish them.
         for format in [StructureFormat::Mtg, StructureFormat::Opf, StructureFormat::Swc] {
             // They say their unit and axes themselves.
             let read = back(&written(&p, format, &spec), format, &StructureSpec::default());
@@ -115,7 +115,7 @@ proptest! {
         prop_assert_eq!(read.tally.entries, read.tally.used);
     }
 
-    /// Whatever the order of the rows, and where no column says what goes on: the same wood.
+    /// The wood is the same in any order of the rows, and without a column for the successor.
     #[test]
     fn tables_may_be_in_any_order(seed in 0..10_000_u64, axes in 1..30_usize) {
         let p = tree(seed, axes, &[AxisKind::Branch], 0);

@@ -191,7 +191,8 @@ proptest! {
         write_qsm(&p, &ExportSpec { up: UpAxis::Z, unit: Unit::Metre }, &mut bytes).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         let head = text.lines().next().unwrap();
-        // What programs read by place stays in its place; after it what rTwig asks for by name.
+        // The first columns have fixed positions for programs that read by position; after them come those that rTwig
+        // reads by name.
         let words: Vec<&str> = head.split(',').collect();
         prop_assert_eq!(words[..5].join(" "), "radius length start_x start_y start_z");
         prop_assert_eq!(words[5..13].join(" "), "axis_x axis_y axis_z parent extension branch BranchOrder PositionInBranch");

@@ -8,7 +8,7 @@ use base::Report;
 use formats::{
     ExportSpec, FileStems, Group, Instance, Linking, ModelFormat, Packing, PngCache, SharedModel, TileNode,
     Tileset, TreeRow, TreeTable, WriteError, gltf_files, no_files, read_model, share_pictures, stand_usda,
-    tileset_json, write_glb_packed, write_tile,
+    tileset_json, write_glb_joined, write_tile,
 };
 use glam::{DQuat, DVec3};
 use mesh::{Bounds, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
@@ -43,7 +43,7 @@ fn plant(red: u8) -> Model {
 /// A model as tiles name it, and its files.
 fn shared(model: &Model, stem: &str, packing: Packing) -> (SharedModel, BTreeMap<String, Vec<u8>>) {
     let mut glb = Vec::new();
-    write_glb_packed(model, packing, &mut PngCache::new(), &mut glb).unwrap();
+    write_glb_joined(model, packing, &mut PngCache::new(), &mut glb).unwrap();
     let files = gltf_files(glb, ModelFormat::Gltf, FileStems { model: stem, textures: stem }).unwrap();
     let files = share_pictures(files, "tree").unwrap();
     let beside = files.beside.into_iter().map(|f| (format!("models/{}", f.name), f.bytes)).collect();
@@ -84,11 +84,11 @@ fn document(glb: &[u8]) -> (Value, Vec<u8>) {
     (serde_json::from_slice(&glb[20..20 + length]).unwrap(), glb[28 + length..].to_vec())
 }
 
-fn at(row: &Value, key: &str) -> usize {
+fn whole_number(row: &Value, key: &str) -> usize {
     usize::try_from(row[key].as_u64().unwrap_or_else(|| panic!("{key} of {row}"))).unwrap()
 }
 
-/// What the extensions' texts ask for; the rows of the table that copies name, in their order.
+/// Checks the demands of the extensions' texts; returns the rows of the table that copies name, in their order.
 fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
     let (root, bin) = document(glb);
     assert_eq!(
@@ -99,12 +99,12 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
     let list = |name: &str| root[name].as_array().cloned().unwrap_or_default();
     let (views, accessors, buffers) = (list("bufferViews"), list("accessors"), list("buffers"));
     assert!(
-        buffers[0].get("uri").is_none() && at(&buffers[0], "byteLength") == bin.len(),
+        buffers[0].get("uri").is_none() && whole_number(&buffers[0], "byteLength") == bin.len(),
         "the first buffer is the file's own"
     );
     for view in &views {
         let end = |v: &Value| v["byteOffset"].as_u64().unwrap_or(0) + v["byteLength"].as_u64().unwrap();
-        let buffer = |v: &Value| &buffers[at(v, "buffer")];
+        let buffer = |v: &Value| &buffers[whole_number(v, "buffer")];
         assert!(end(view) <= buffer(view)["byteLength"].as_u64().unwrap(), "{view}");
         let packed = &view["extensions"]["EXT_meshopt_compression"];
         assert!(
@@ -112,16 +112,16 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
             "{packed}"
         );
     }
-    assert!(accessors.iter().all(|a| at(a, "bufferView") < views.len()), "views of accessors");
+    assert!(accessors.iter().all(|a| whole_number(a, "bufferView") < views.len()), "views of accessors");
     for (name, key, of) in [("textures", "source", "images"), ("nodes", "mesh", "meshes")] {
         assert!(
-            list(name).iter().all(|row| row.get(key).is_none() || at(row, key) < list(of).len()),
+            list(name).iter().all(|row| row.get(key).is_none() || whole_number(row, key) < list(of).len()),
             "{name}"
         );
     }
     let metadata = &root["extensions"]["EXT_structural_metadata"];
     let table = &metadata["propertyTables"][0];
-    let count = at(table, "count");
+    let count = whole_number(table, "count");
     assert_eq!(
         metadata["schema"]["enums"]["species"]["values"].as_array().unwrap().len(),
         species.len(),
@@ -129,10 +129,14 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
     );
     let class = &metadata["schema"]["classes"]["tree"]["properties"];
     for (name, property) in table["properties"].as_object().unwrap() {
-        let view = &views[at(property, "values")];
-        let size = if class[name]["type"] == "ENUM" { 2 } else { 4 };
-        assert_eq!(at(view, "byteLength"), size * count, "{name}");
-        assert_eq!((at(view, "buffer"), at(view, "byteOffset") % 8), (0, 0), "{name}: aligned");
+        let view = &views[whole_number(property, "values")];
+        let size = if class[name]["componentType"] == "UINT32" { 4 } else { 2 };
+        assert_eq!(whole_number(view, "byteLength"), size * count, "{name}");
+        assert_eq!(
+            (whole_number(view, "buffer"), whole_number(view, "byteOffset") % 8),
+            (0, 0),
+            "{name}: aligned"
+        );
     }
     let scene: Vec<usize> = (0..list("nodes").len()).collect();
     assert_eq!(root["scenes"][0]["nodes"], serde_json::json!(scene), "all at the top");
@@ -144,12 +148,16 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
         let attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"].as_object().unwrap();
         let counts: Vec<usize> = attributes
             .values()
-            .map(|a| at(&accessors[usize::try_from(a.as_u64().unwrap()).unwrap()], "count"))
+            .map(|a| whole_number(&accessors[usize::try_from(a.as_u64().unwrap()).unwrap()], "count"))
             .collect();
         assert!(counts.windows(2).all(|c| c[0] == c[1]), "{counts:?}");
         let features = &node["extensions"]["EXT_instance_features"]["featureIds"][0];
         assert_eq!(
-            (at(features, "featureCount"), at(features, "propertyTable"), at(features, "attribute")),
+            (
+                whole_number(features, "featureCount"),
+                whole_number(features, "propertyTable"),
+                whole_number(features, "attribute")
+            ),
             (count, 0, 0),
             "features of copies"
         );
@@ -159,6 +167,24 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
         assert!(root["extensionsUsed"].as_array().unwrap().iter().any(|w| w == word), "{word}");
     }
     named
+}
+
+/// The heights and stems of the table of [`rows`], by the rules of `EXT_structural_metadata` for normalised integers.
+fn check_measures(glb: &[u8]) {
+    let (root, bin) = document(glb);
+    let metadata = &root["extensions"]["EXT_structural_metadata"];
+    for (name, wanted, off) in [("height_m", [10.5, 13.5, 18.0], 0.005), ("dbh_m", [0.25; 3], 0.0005)] {
+        let class = &metadata["schema"]["classes"]["tree"]["properties"][name];
+        let values = &metadata["propertyTables"][0]["properties"][name];
+        let view = &root["bufferViews"][whole_number(values, "values")];
+        let start = view["byteOffset"].as_u64().map_or(0, |n| usize::try_from(n).unwrap());
+        let own = bin[start..].as_chunks::<2>().0.iter().map(|b| f64::from(u16::from_le_bytes(*b)));
+        let scale = class["scale"].as_f64().unwrap();
+        for (n, wanted) in own.zip(wanted) {
+            let measure = n / 65_535.0 * scale;
+            assert!((measure - wanted).abs() <= off, "{name}: {measure} for {wanted}");
+        }
+    }
 }
 
 #[test]
@@ -181,7 +207,8 @@ fn copies_stand_scaled_turned_and_moved_in_each_packing() {
         let open = |uri: &str| Ok::<_, WriteError>(files[uri].clone());
         let mut glb = Vec::new();
         write_tile("trees", &groups, &table, Some(packing), Linking::Embedded(&open), &mut glb).unwrap();
-        assert_eq!(check_tile(&glb, &species), [2, 2]);
+        assert_eq!(check_tile(&glb, &species), [2], "a node a plant");
+        check_measures(&glb);
         let mut report = Report::default();
         let back =
             read_model(&glb[..], ModelFormat::Glb, "x", &ExportSpec::default(), &no_files, &mut report)
@@ -219,13 +246,27 @@ fn tiles_name_shared_files_once() {
     };
     let glb = write();
     assert_eq!(glb, write(), "the same bytes");
-    assert_eq!(check_tile(&glb, &species).len(), 6);
+    assert_eq!(check_tile(&glb, &species).len(), 3);
     let (root, _) = document(&glb);
+    let count = |name: &str| root[name].as_array().unwrap().len();
+    // Of each plant five views (position, normal, texture coordinates, colour, triangles) less the colours that these do not have,
+    // an accessor for each and one more for its second part; of the tile four columns of copies and six of the table.
+    assert_eq!(count("bufferViews"), 3 * 4 + 4 + 6);
+    assert_eq!(count("accessors"), 3 * (5 + 4));
+    assert_eq!(count("buffers"), 3 + 2, "one of what is compressed");
     let uris: Vec<&str> =
         root["buffers"].as_array().unwrap().iter().filter_map(|b| b["uri"].as_str()).collect();
     assert_eq!(uris, ["models/a.bin", "models/b.bin", "models/c.bin"]);
     assert_eq!(root["images"].as_array().unwrap().len(), 2, "two of three trees share theirs");
     assert_eq!(root["materials"].as_array().unwrap().len(), 3);
+    let text = |n: usize| {
+        let groups: Vec<Group<'_>> = groups.iter().cycle().take(n).copied().collect();
+        let mut glb = Vec::new();
+        write_tile("trees", &groups, &table, Some(packing), Linking::Named, &mut glb).unwrap();
+        u32::from_le_bytes(glb[12..16].try_into().unwrap())
+    };
+    let more = (text(9) - text(3)) / 6;
+    assert!(more < 2_000, "{more} bytes of text for a plant more");
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn table() -> String {
 
 fn line(out: &mut String, row: &FormatRow) {
     let yes = |rooms: &[Room]| if rooms.iter().all(|room| row.holds.contains(room)) { "yes" } else { "–" };
-    let is_robot = row.beside.contains(&Beside::Meshes);
+    let is_robot = RobotFormat::ALL.into_iter().any(|format| format.row() == row);
     let fixed = if is_robot { "metres, +Z up" } else { "metres, +Y up" };
     let axes = if row.holds.contains(&Room::Axes) { "`--up`, `--unit`" } else { fixed };
     let access = match (row.is_read(), row.is_written()) {
@@ -47,7 +47,7 @@ fn line(out: &mut String, row: &FormatRow) {
         _ => "writes it",
     };
     let endings: Vec<String> = row.endings.iter().map(|ending| format!("`.{ending}`")).collect();
-    let beside: Vec<String> = row.beside.iter().map(|what| beside(*what)).collect();
+    let beside: Vec<String> = row.beside.iter().map(|what| companion_names(*what)).collect();
     let beside = if beside.is_empty() { String::new() } else { format!(" ({})", beside.join(", ")) };
     let many = yes(&[Room::Instances, Room::Levels, Room::Joints]);
     writeln!(
@@ -61,7 +61,7 @@ fn line(out: &mut String, row: &FormatRow) {
 }
 
 /// The names of the files beside one of the stem `NAME`.
-fn beside(what: Beside) -> String {
+fn companion_names(what: Beside) -> String {
     match (what, what.ending()) {
         (_, Some(ending)) => format!("`NAME.{ending}`"),
         (Beside::Meshes, None) => "`NAME-BODY_PART.stl`".to_owned(),

@@ -1,12 +1,12 @@
 //! Markers: drawn once for the cone of any bud, turned for each, and counted in the cells of a grid.
 //!
-//! `cone -> pool of markers -> (turned) -> cells -> how many of others are where one's own are`
+//! `cone -> pool of markers -> (turned) -> cells -> number of others' markers in the same cells`
 //!
-//! A bud's own markers lie by chance, as those of the VR paper do, and are summed up beforehand. Others' are told by far fewer
-//! that lie evenly.
+//! A bud's own markers are random, as in the VR paper, and are summed in advance. Others' markers are sampled by far
+//! fewer evenly spread ones.
 //!
-//! What is done for each marker runs over columns of numbers of 32 bits, which compilers make run four abreast. Sums are
-//! taken in four lanes in any case: the same bits everywhere.
+//! The work for each marker runs over columns of 32-bit numbers, which compilers process four at a time. Sums always
+//! use four lanes: the same bits everywhere.
 
 use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
@@ -15,49 +15,52 @@ use glam::{DVec3, Vec3, Vec4};
 use super::GuidedSpec;
 use super::room::{Guide, Room};
 
-/// Markers of the pool, at least: each bud takes some that follow one another, from a place of its own.
+/// Least size of the pool of markers: each bud takes consecutive ones, from a start of its own.
 const POOL: usize = 4096;
-/// A bud's markers are turned about its heading in one of so many ways.
+/// Number of rotations about a bud's heading that its markers may have.
 const TURNS: usize = 1024;
-/// The tile of a place that is in none.
+/// Marks a place that is in no tile.
 const NO_TILE: u32 = u32::MAX;
-/// 2^23: numbers of 32 bits from here to its double are whole.
+/// 2^23: 32-bit numbers from here to its double are whole.
 const WHOLE: f32 = 8_388_608.0;
-/// A cone is at most so many cells long.
+/// Largest length of a cone, in cells.
 const LONGEST: f64 = 1e6;
-/// A tile of the grid is 4 cells long, wide and high: so many bits number those in it.
+/// Bits that number the cells of a tile, which is 4 cells long, wide and high.
 const TILE: u32 = 6;
-/// Most tiles of a grid whose cells are numbered in 32 bits; and so many more than there are markers, or the grid is
-/// nearly empty.
+/// Most tiles of a grid whose cells are numbered in 32 bits.
 const MOST_TILES: u64 = 1 << 25;
+/// Most tiles in excess of the number of markers: a grid with more is nearly empty.
 const MORE_TILES: u64 = 65_536;
-/// A grid of at most so many cells for each marker is not numbered anew: its cells are the rows.
+/// Most cells per marker of a grid whose cells serve directly as rows.
 const FEW_CELLS: u64 = 1;
-/// Which markers of others stand in a cone is asked at so many places, or one for so many markers. They lie evenly: what 60
-/// and 650 by chance tell, 32 and 260 that lie evenly tell with no larger error, where cells are a little larger than the
-/// share of a place (over 150 buds in balls of 1, 2 and 3 m, beside 2,000 for each).
+/// Least number of places at which a cone is probed for markers of others. They are evenly spread: 32 and 260 even ones
+/// have no larger error than 60 and 650 random ones, if cells are slightly larger than the share of a place (over 150
+/// buds in balls of 1, 2 and 3 m, compared with 2,000 for each).
 const PROBES: usize = 32;
+/// Markers per probe, if that gives more probes.
 const OF_EACH: usize = 4;
+/// Ratio of the volume of a cell to the share of a probe.
 const LARGER: f64 = 1.15;
-/// Steps whose multiples, less what is whole, fill a cube evenly: powers of the root of x^4 = x + 1, any number of which that
-/// follow one another lie as evenly (Roberts 2018).
+/// Steps whose multiples modulo 1 fill a cube evenly: powers of the root of x^4 = x + 1. Any consecutive multiples are
+/// as even (Roberts 2018).
 const EVENLY: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_2];
-/// So many markers are looked at together.
+/// Markers that are processed together.
 const TOGETHER: usize = 64;
 
 /// Numbers in three columns.
 type Columns<T> = [T; 3];
 
-/// Markers in the frame of a bud: its heading, side and across. What is asked for at different times lies apart.
+/// Markers in the frame of a bud: its heading, side and across. Columns that are used at different times are stored
+/// apart.
 #[derive(Clone, Debug, Default)]
 struct Pool {
     way: Columns<Vec<f32>>,
-    /// As far along its way as each is, in cells.
+    /// Position along its direction of each, in cells.
     place: Columns<Vec<f32>>,
     weight: Vec<f32>,
 }
 
-/// Of all markers before each: the sum of their weights, and of their ways times these.
+/// Running sums over all markers before each: of their weights, and of their directions times these.
 #[derive(Clone, Debug, Default)]
 struct Running {
     whole: Vec<f64>,
@@ -84,18 +87,18 @@ impl Pool {
     }
 }
 
-/// The cone of perception, the same for all buds but for where it stands.
+/// The cone of perception, the same for all buds except for its position.
 #[derive(Clone, Debug)]
 pub(super) struct Cone {
-    /// Markers by chance: what they sum up to decides where a bud's own room is.
+    /// Random markers, whose sums determine a bud's own room.
     own: Running,
-    /// Others', which stand evenly: they tell who else is there.
+    /// Evenly spread markers, which sample the markers of others.
     pool: Pool,
-    /// Sine and cosine of so many turns about a bud's heading.
+    /// Sine and cosine of each rotation about a bud's heading.
     turns: Vec<[f64; 2]>,
-    /// Of one bud.
+    /// Number of markers of one bud.
     markers: usize,
-    /// Those of them that stand for all where others' are met.
+    /// Number of those that sample the markers of others.
     probes: usize,
     far: f64,
     /// Side of a cell.
@@ -104,7 +107,7 @@ pub(super) struct Cone {
     share: f64,
 }
 
-/// Where a cone stands.
+/// Position and orientation of a cone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stand {
     pub(super) at: DVec3,
@@ -118,55 +121,55 @@ pub(super) struct Stand {
 pub(super) struct Grid {
     from: DVec3,
     per_m: f64,
-    /// Cells from the middle of a cone to the furthest that it can reach.
+    /// Cells from the centre of a cone to its farthest reach.
     reach: u32,
-    /// Along x and y.
+    /// Tiles along x and y.
     tiles: [u64; 2],
-    /// Of all, where their cells are numbered in 32 bits.
+    /// Number of all tiles, if their cells are numbered in 32 bits.
     all: Option<usize>,
-    /// What is met is kept for all cells of the grid, not for those alone in which markers lie.
+    /// Whether counts are stored for all cells of the grid, and not only for those with markers.
     is_full: bool,
 }
 
 /// The markers of one bud.
 #[derive(Clone, Copy, Debug)]
 struct Of {
-    /// The first of the pool.
+    /// The first of its markers in the pool.
     first: usize,
     side: DVec3,
     across: DVec3,
-    /// Where those of the batch end that are its own.
+    /// End of its own markers in the batch.
     end: usize,
-    /// All of them found room, and nothing guides them: nothing is said of each.
+    /// All of them found room, and nothing guides them: none is listed individually.
     is_whole: bool,
 }
 
-/// The markers of some buds: those that found room.
+/// The markers of some buds that found room.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batch {
     of: Vec<Of>,
-    /// The cells of the markers, bud by bud, and then their rows among those that are met.
+    /// The cells of the markers, bud by bud, later replaced by their rows among the cells with markers.
     rows: Vec<u32>,
-    /// The cells, where 32 bits do not number them.
+    /// The cells, if 32 bits do not number them.
     cells: Vec<u64>,
-    /// Of those that are not whole, which of the pool each is; no others have any.
+    /// Index in the pool of each marker, for buds whose markers are not whole; others have none.
     which: Vec<u32>,
-    /// What strokes add to each of these; none without strokes.
+    /// Guidance by strokes for each of these; empty without strokes.
     guides: Vec<Guide>,
 }
 
-/// What a bud's markers sum up to.
+/// Sums over a bud's markers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
-    /// Own markers.
+    /// Number of own markers.
     pub(super) own: f64,
-    /// Of their weights.
+    /// Sum of their weights.
     pub(super) whole: f64,
-    /// Of the ways to them and along their strokes, each times its weight.
+    /// Sum of the directions to them and along their strokes, each times its weight.
     pub(super) pull: DVec3,
-    /// Of the ways to the markers of other buds, each times its weight.
+    /// Sum of the directions to the markers of other buds, each times its weight.
     pub(super) push: DVec3,
-    /// Markers of older buds.
+    /// Number of markers of older buds.
     pub(super) older: f64,
 }
 
@@ -177,7 +180,7 @@ struct Held {
     weight: f32,
 }
 
-/// Memory of one round, taken again by the next: a fresh one would cost as much as what is written to it.
+/// Memory of one round, reused by the next: allocating it anew would cost as much as filling it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     tiles: Tiles,
@@ -185,7 +188,7 @@ pub(super) struct Scratch {
     own: OwnColumns,
 }
 
-/// A bud's own markers, in columns, where they do not follow one another in the pool.
+/// A bud's own markers, in columns, if they are not consecutive in the pool.
 #[derive(Clone, Debug, Default)]
 struct OwnColumns {
     way: Columns<Vec<f32>>,
@@ -210,8 +213,8 @@ impl Cone {
         // Strokes weigh each marker.
         let few = if spec.strokes.is_empty() { PROBES.max(markers.div_ceil(OF_EACH)) } else { markers };
         let probes = few.min(markers);
-        // As large as a probe's share, so that a probe meets in its cell what is in its way. But a cone must be two
-        // cells wide and deep, or cells would reach out of it.
+        // As large as a probe's share, so that the cell of a probe holds the markers in its part. But a cone must be
+        // two cells wide and deep, or cells would extend out of it.
         let volume = TAU / 3.0 * (1.0 - cos_half) * (far3 - near3) / probes as f64;
         let wide = far * if half < 0.5 * PI { ops::sin(half) } else { 1.0 };
         let cell = (LARGER * ops::cbrt(volume)).min(0.5 * wide).min(0.5 * (far - near)).max(far / LONGEST);
@@ -226,7 +229,7 @@ impl Cone {
         let count = POOL.max(markers);
         let by_chance: Vec<_> = (0..count).map(|_| marker([(); 3].map(|()| stream.uniform()))).collect();
         let mut own = Running { whole: vec![0.0], pull: vec![DVec3::ZERO] };
-        // Its first ones once more at its end: those of a bud follow one another.
+        // The first ones are repeated at its end: those of a bud are consecutive.
         for &(way, _, weight) in by_chance.iter().chain(&by_chance[..markers]) {
             own.push(way, weight);
         }
@@ -248,7 +251,7 @@ impl Cone {
         }
     }
 
-    /// A grid that holds the cones of buds at these places.
+    /// Makes a grid that contains the cones of buds at these positions.
     pub(super) fn grid(&self, places: impl Iterator<Item = DVec3>) -> Grid {
         let none = (0_u64, DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (buds, lo, hi) = places.fold(none, |(n, lo, hi), p| (n + 1, lo.min(p), hi.max(p)));
@@ -270,7 +273,7 @@ impl Cone {
         Grid { from, per_m, reach, tiles: [x, y], all: all.and_then(|n| usize::try_from(n).ok()), is_full }
     }
 
-    /// The markers of buds, but for those that find no room.
+    /// Returns the markers of buds, except those that find no room.
     pub(super) fn markers(&self, stands: impl Iterator<Item = Stand>, grid: &Grid, room: &Room) -> Batch {
         let (mut batch, mut near) = (Batch::default(), Vec::new());
         let mut kept: Columns<Vec<f32>> = Columns::default();
@@ -301,7 +304,7 @@ impl Cone {
                     let guide = if room.is_plain() {
                         room.surrounds(p).then_some(None)
                     } else {
-                        room.at(p, &mut near).map(Some)
+                        room.guide_at(p, &mut near).map(Some)
                     };
                     let Some(guide) = guide else { continue };
                     batch.which.push(which);
@@ -321,11 +324,11 @@ impl Cone {
         batch
     }
 
-    /// What the markers of each bud sum up to, beside those of all others. The earlier a bud, the older.
+    /// Sums the markers of each bud, with those of all others. The earlier a bud, the older.
     ///
     /// Markers of others in a bud's cone are found by its own: these are spread evenly over its room, so that the sum
-    /// over them of what their cells hold estimates that over the cone. Some stand for all, of others' as of its own.
-    /// Cost: linear in these.
+    /// over them of the contents of their cells estimates that over the cone. Some represent all, for others' markers
+    /// as for its own. Cost: linear in these.
     pub(super) fn sums(
         &self,
         grid: &Grid,
@@ -334,7 +337,7 @@ impl Cone {
         scratch: &mut Scratch,
     ) -> Vec<Sums> {
         let mut sums = Vec::with_capacity(headings.len());
-        // A probe stands for so many markers.
+        // Number of markers that a probe represents.
         let each = self.markers as f64 / self.probes as f64;
         let Scratch { tiles, held, own } = scratch;
         let cells = match grid.all.filter(|_| grid.is_full) {
@@ -380,7 +383,7 @@ impl Cone {
         sums
     }
 
-    /// The markers of each bud of a batch, and what strokes add to them.
+    /// Calls `f` with the markers of each bud of a batch, and their guidance by strokes.
     fn each(&self, batch: &Batch, columns: &mut OwnColumns, mut f: impl FnMut(&Of, Own<'_>, &[Guide])) {
         let (mut from, mut part) = (0, 0);
         for of in &batch.of {
@@ -419,7 +422,7 @@ impl Own<'_> {
         self.weight.iter().map(|w| f64::from(*w)).sum()
     }
 
-    /// The sum of the ways from a marker on, each times a number: in four lanes, whatever the machine.
+    /// Returns the sum of the directions from a marker on, each times a number: in four lanes on every machine.
     #[inline]
     fn dot<T: Copy>(&self, from: usize, of: &[T], mut number: impl FnMut(T) -> f32) -> DVec3 {
         let [x, y, z] = self.way.map(|way| way[from..from + of.len()].as_chunks::<4>());
@@ -441,8 +444,8 @@ impl Own<'_> {
         Vec3::from_array(sum.map(|s| (s[0] + s[1]) + (s[2] + s[3]))).as_dvec3()
     }
 
-    /// How many of older buds its markers meet in their cells, and how they push it, less what its own would add to what
-    /// [`see`](Self::see) says; then its own are held, too.
+    /// Returns the number of markers of older buds in the cells of its markers, and their push, less the part of its
+    /// own in [`see`](Self::see); then adds its own to the cells.
     fn meet(&self, held: &mut [Held]) -> (f64, DVec3) {
         let (mut older, mut push) = (0.0, DVec3::ZERO);
         for (k, rows) in self.rows.chunks(TOGETHER).enumerate() {
@@ -462,7 +465,7 @@ impl Own<'_> {
         (older, push - self.see(held))
     }
 
-    /// How all that its markers meet pushes it.
+    /// Returns the push by everything in the cells of its markers.
     fn see(&self, held: &[Held]) -> DVec3 {
         let rows = self.rows.chunks(TOGETHER).enumerate();
         rows.map(|(k, rows)| self.dot(k * TOGETHER, rows, |row| held[row as usize].weight)).sum()
@@ -476,16 +479,16 @@ const fn short(x: f64) -> f32 {
 
 /// A bud's frame in a grid, in cells.
 struct Turned {
-    /// The cell that the numbers below count from.
+    /// The cell from which the numbers below count.
     cell: [u64; 3],
-    /// The bud, half a cell less.
+    /// The bud's position, minus half a cell.
     at: [f32; 3],
-    /// For each of x, y and z what a cell along heading, side and across adds.
+    /// For each of x, y and z, the change of the cell along heading, side and across.
     frame: [[f32; 3]; 3],
 }
 
 impl Batch {
-    /// Markers at places in a bud's frame, in cells.
+    /// Adds markers at positions in a bud's frame, in cells.
     #[inline]
     fn add(&mut self, x: &[f32], y: &[f32], z: &[f32], turned: &Turned, grid: &Grid) {
         let [tx, ty, tz] = turned.frame;
@@ -510,7 +513,7 @@ impl Batch {
         }
         #[expect(clippy::cast_possible_truncation, reason = "a grid of few tiles")]
         let ([cx, cy, cz], [nx, ny]) = (turned.cell.map(|n| n as u32), grid.tiles.map(|n| n as u32));
-        // Written to rows that are there, as this runs four abreast; one by one, each would be asked whether there is room.
+        // Written to existing rows, as this runs four at a time; a push for each would check the capacity.
         let from = self.rows.len();
         self.rows.resize(from + x.len(), 0);
         for (row, [x, y, z]) in self.rows[from..].iter_mut().zip(places) {
@@ -538,13 +541,13 @@ impl Grid {
     }
 }
 
-/// Numbers the tiles in which markers lie from 0, in the order in which buds come to them: most of the grid is empty, and
-/// what buds beside one another look at lies together.
+/// Numbers the tiles that contain markers from 0, in the order in which buds reach them: most of the grid is empty, and
+/// the data of neighbouring buds is stored together.
 #[derive(Clone, Debug, Default)]
 struct Tiles {
-    /// Of each tile of the grid, or of each that is met, its number.
+    /// Number of each tile of the grid, or of each tile with markers.
     numbers: Vec<u32>,
-    /// Of a grid that is nearly empty, as of trees far apart: only its tiles that are met, in order.
+    /// For a grid that is nearly empty, as with trees far apart: only its tiles with markers, in order.
     met: Vec<u64>,
     next: u32,
 }
@@ -560,11 +563,11 @@ impl Tiles {
         self.numbers.resize(grid.all.unwrap_or(self.met.len()), NO_TILE);
     }
 
-    /// Puts rows in the place of the cells of a batch.
+    /// Replaces the cells of a batch by rows.
     fn number(&mut self, batch: &mut Batch) {
         let Self { numbers, met, next } = self;
         let mut row = |tile: usize, inner: u32| {
-            // A place that is no number is in some tile, too.
+            // A position that is not a number must be in some tile, too.
             let tile = if tile < numbers.len() { tile } else { 0 };
             let number = &mut numbers[tile];
             if *number == NO_TILE {
@@ -585,7 +588,7 @@ impl Tiles {
         batch.rows.extend(far);
     }
 
-    /// So many cells lie in tiles that were met.
+    /// Returns the number of cells in numbered tiles.
     const fn cells(&self) -> usize {
         (self.next as usize) << TILE
     }
@@ -597,7 +600,7 @@ mod tests {
     use crate::Obstacles;
     use base::{Budget, Stream};
 
-    /// What the markers of each bud sum up to, by looking at all of all others, had each far more of them.
+    /// Sums the markers of each bud against all of all others, with far more of them.
     fn brute(cone: &Cone, spec: &GuidedSpec, stands: &[Stand], batch: &Batch) -> Vec<(DVec3, f64)> {
         const MANY: usize = 2000;
         let each = cone.markers as f64 / MANY as f64;
@@ -656,8 +659,8 @@ mod tests {
             let headings: Vec<DVec3> = stands.iter().map(|s| s.heading).collect();
             let sums = cone.sums(&grid, &mut batches, &headings, &mut Scratch::default());
             let truth = brute(&cone, &spec, &stands, &batches[0]);
-            // The sum of differences by the sum of what is there. As many markers by chance were off by up to 1.9 over the
-            // root of their number.
+            // The sum of differences over the sum of totals. The same number of random markers was off by up to 1.9
+            // over the root of their number.
             let share = |differ: f64, there: f64| differ / there;
             let there = truth.iter().map(|t| t.1).sum::<f64>();
             let bias = share(sums.iter().map(|s| s.older).sum::<f64>() - there, there);
@@ -667,7 +670,7 @@ mod tests {
             let chance = 1.0 / f64::from(markers).sqrt();
             assert!(bias.abs() < 0.05, "{markers} in {half_angle_deg}: {bias}");
             assert!(off < 0.02 + 1.7 * chance, "{markers} in {half_angle_deg}: {off}");
-            // All around a bud, others push from all sides, and little is left.
+            // If buds perceive all around, others push from all sides, and little remains.
             let most = if half_angle_deg > 90.0 { 4.0 } else { 2.0 };
             assert!(away < 0.02 + most * chance, "{markers} in {half_angle_deg}: {away}");
         }

@@ -1,4 +1,4 @@
-//! Guided growth: buds that make markers of their own, keep away from others' and follow a brush.
+//! Guided growth: buds that make their own markers, keep away from others' and follow a brush.
 //!
 //! `buds -> (markers in their cones -> directions, free space -> vigour -> shoots) x rounds -> Skeleton` (the VR paper)
 
@@ -18,25 +18,25 @@ use room::Room;
 
 pub use self::spec::{BrushStroke, GuidedChange, GuidedSpec};
 
-/// A bud that growth starts from.
+/// A bud from which growth starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StartBud {
     /// The joint that bears it.
     pub joint: JointId,
-    /// Where it would grow; any length above 0.
+    /// Direction of growth; any length above 0.
     pub heading: DVec3,
-    /// The round, from 0, in which it wakes.
+    /// The round, from 0, in which it becomes active.
     pub wakes: u32,
 }
 
-/// What guided growth made.
+/// Result of guided growth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guided {
     /// The joints, those given first.
     pub skeleton: Skeleton,
     /// Markers made in all rounds.
     pub markers: usize,
-    /// Buds that died for want of room.
+    /// Buds that died for lack of room.
     pub died: usize,
     /// Rounds in which something grew.
     pub rounds: u32,
@@ -48,8 +48,8 @@ pub struct Guided {
 /// the markers' own bud (mean `(near + far) / 2`, deviation `(far - near) / 4`), in strokes by the distance to the
 /// stroke: `V = sum w_i v_i + sum w_i k_s t_i - k_r sum w_j u_j + k_g W g`. A bud dies when buds older than it have
 /// more markers in its cone than itself, or when V is shorter than a tenth of W. Vigour is shared as in Palubicki et
-/// al. 2009, section 4.2, free space standing for light. Guaranteed: it ends; a clean `validate()`; no joint in an
-/// obstacle; the same bits for any thread count. Cost: buds x markers of each round.
+/// al. 2009, section 4.2, with free space in the place of light. Guaranteed: it ends; a clean `validate()`; no joint in
+/// an obstacle; the same bits for any thread count. Cost: buds x markers of each round.
 ///
 /// # Errors
 /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
@@ -74,9 +74,9 @@ pub fn guide(
     Growing::plant(roots, obstacles, spec, seed, run)?.through(run, report)
 }
 
-/// As [`guide`], from wood that is there already: only `buds` grow, in the order given; earlier ones count as older.
+/// As [`guide`], from existing wood: only `buds` grow, in the order given; earlier ones count as older.
 ///
-/// An `envelope` is relative to the skeleton's roots. Buds of joints that are not there are left out.
+/// An `envelope` is relative to the skeleton's roots. Buds of joints that do not exist are left out.
 ///
 /// # Errors
 /// As [`guide`].
@@ -99,14 +99,14 @@ struct Bud {
     side: DVec3,
     /// Number of its joint along its axis, for phyllotaxis.
     rank: u32,
-    /// Continues the axis that its joint ends.
+    /// Whether it continues the axis that its joint ends.
     terminal: bool,
     wakes: u32,
     key: Seed,
     lives: bool,
 }
 
-/// What a bud saw in a round.
+/// Perception of a bud in a round.
 #[derive(Clone, Copy, Debug, Default)]
 struct Look {
     direction: DVec3,
@@ -114,32 +114,33 @@ struct Look {
     dies: bool,
 }
 
-/// What passes a joint: free space on its way down, then vigour on its way up.
+/// Flow through a joint: free space on its way down, then vigour on its way up.
 #[derive(Clone, Copy, Debug, Default)]
 struct Flow {
-    /// All that is gathered; then what reaches the main axis beyond the joint.
+    /// The gathered free space; then the vigour that reaches the main axis beyond the joint.
     all: f64,
-    /// That of the main axis; then what each unit of free space at its side gets.
+    /// The part of the main axis; then the vigour for each unit of free space at its side.
     main: f64,
 }
 
 /// Buds of one job of a parallel map.
 const GROUP: usize = 32;
 
-/// What a round left.
+/// State after a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GrowthStep {
-    /// Buds that may grow on.
+    /// Some buds may grow on.
     Goes,
-    /// No living bud.
+    /// No bud is alive.
     Ended,
-    /// As many joints as are allowed; nothing was grown.
+    /// The limit of joints is reached; nothing was grown.
     Full,
 }
 
-/// Guided growth that can be looked at after every round, and go on with other numbers.
+/// Guided growth that can be inspected after every round, and continued with other numbers.
 ///
-/// What was changed, and when, is part of the [record](Growing::record): grown from it, the tree is the same one.
+/// All changes, with their rounds, are part of the [record](Growing::record): growth from the record gives the same
+/// tree.
 ///
 /// ```
 /// use base::{Report, Run, Seed};
@@ -163,17 +164,17 @@ pub struct Growing {
     skeleton: Skeleton,
     /// Whether each joint continues the axis of its parent.
     is_main: Vec<bool>,
-    /// Joints that were there before.
+    /// Number of joints that were given.
     given: usize,
-    /// Those that live, the oldest first.
+    /// The living buds, the oldest first.
     buds: Vec<Bud>,
     scratch: Scratch,
-    /// Of each joint; memory of one round, taken again by the next.
+    /// Flow through each joint; the memory is reused by the next round.
     flow: Vec<Flow>,
     room: Room,
-    /// As it is asked at first.
+    /// The original spec.
     asked: GuidedSpec,
-    /// With the changes so far, and without a list of changes.
+    /// The spec with the changes so far, and without a list of changes.
     spec: GuidedSpec,
     numbers: Numbers,
     cone: Cone,
@@ -181,20 +182,20 @@ pub struct Growing {
     /// The next round.
     round: u32,
     grew: u32,
-    /// The next change of those that were asked at first.
+    /// The next change of the original spec.
     next_change: usize,
     markers_made: usize,
     died: usize,
 }
 
-/// What to do where buds look at too many markers.
+/// Remedy if buds need too many markers.
 const TOO_MANY: &str = "lower markers, rounds or alpha, or give fewer roots";
 
 fn place_key(p: DVec3) -> u64 {
     p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
 }
 
-/// The room around the roots of a skeleton, and what follows from the numbers of a spec.
+/// Returns the room around the roots of a skeleton, and the numbers derived from a spec.
 fn room_of(
     skeleton: &Skeleton,
     obstacles: &Obstacles,
@@ -207,7 +208,7 @@ fn room_of(
 }
 
 impl Growing {
-    /// A tree at each root; they compete.
+    /// Plants a tree at each root; they compete.
     ///
     /// # Errors
     /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
@@ -229,9 +230,9 @@ impl Growing {
         Ok(Self::new(skeleton, &buds, room, spec, numbers, seed))
     }
 
-    /// From wood that is there already: only `buds` grow, in the order given; earlier ones count as older.
+    /// Starts from existing wood: only `buds` grow, in the order given; earlier ones count as older.
     ///
-    /// An `envelope` is relative to the skeleton's roots. Buds of joints that are not there are left out.
+    /// An `envelope` is relative to the skeleton's roots. Buds of joints that do not exist are left out.
     ///
     /// # Errors
     /// As [`Growing::plant`].
@@ -302,7 +303,7 @@ impl Growing {
         }
     }
 
-    /// All rounds that are asked.
+    /// Runs all requested rounds.
     fn through(mut self, run: &Run<'_>, report: &mut Report) -> Result<Guided, GrowthError> {
         let started = run.clock.now_ms();
         self.go_on(run, report)?;
@@ -311,9 +312,9 @@ impl Growing {
         Ok(grown)
     }
 
-    /// Grows the rounds that are asked and not grown yet, or until nothing grows any more.
+    /// Grows the requested rounds that are still missing, or until nothing grows any more.
     ///
-    /// Guaranteed: the same tree, however many steps and calls led there.
+    /// Guaranteed: the same tree, for any division into steps and calls.
     ///
     /// # Errors
     /// As [`Growing::step`].
@@ -337,9 +338,8 @@ impl Growing {
         Ok(())
     }
 
-    /// Takes another request in the place of the one that was asked, where what has grown so far is what that asks, too:
-    /// the same but for its rounds, no fewer than were grown, and for changes in rounds that are still to come. Whether it
-    /// did; if not, all is as it was.
+    /// Replaces the spec by another for which the growth so far is valid: one that differs only in its rounds, no fewer
+    /// than were grown, and in changes of rounds still to come. Returns whether it did; if not, nothing changed.
     ///
     /// # Errors
     /// [`GrowthError`]: numbers out of range.
@@ -374,10 +374,10 @@ impl Growing {
         Ok(same)
     }
 
-    /// Other numbers from the next round on, in the place of those that were asked at first for later rounds.
+    /// Changes numbers from the next round on, and drops the changes in the original spec for later rounds.
     ///
     /// # Errors
-    /// [`GrowthError`]: numbers out of range; all is as it was then.
+    /// [`GrowthError`]: numbers out of range; then nothing changed.
     pub fn change(&mut self, change: GuidedChange, run: &Run<'_>) -> Result<(), GrowthError> {
         let change = GuidedChange { round: self.round, ..change };
         self.apply(&change, run)?;
@@ -400,13 +400,13 @@ impl Growing {
         Ok(())
     }
 
-    /// Grows one round, however many were asked.
+    /// Grows one round, however many were requested.
     ///
-    /// Guaranteed: wood that is there does not change, new joints come after it; the same bits for any thread count.
-    /// Cost: living buds x markers, and linear in joints.
+    /// Guaranteed: existing wood does not change, new joints come after it; the same bits for any thread count. Cost:
+    /// living buds x markers, and linear in joints.
     ///
     /// # Errors
-    /// [`GrowthError`]: cancelled, or over budget. What was grown before stays.
+    /// [`GrowthError`]: cancelled, or over budget. Earlier growth stays.
     pub fn step(&mut self, run: &Run<'_>) -> Result<GrowthStep, GrowthError> {
         run.cancel.check()?;
         if self.skeleton.len() >= self.spec.max_joints as usize {
@@ -429,40 +429,41 @@ impl Growing {
         Ok(if goes { GrowthStep::Goes } else { GrowthStep::Ended })
     }
 
-    /// The wood so far, with the twigs that [`finish`](Self::finish) sheds.
+    /// Returns the wood so far, including the twigs that [`finish`](Self::finish) sheds.
     pub const fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }
 
-    /// Buds that may grow on.
+    /// Returns the number of buds that may grow on.
     pub const fn living(&self) -> usize {
         self.buds.len()
     }
 
-    /// At how many markers buds have looked so far: what growth costs.
+    /// Returns the number of markers made so far: the measure of the cost of growth.
     pub const fn looks(&self) -> u64 {
         self.markers_made as u64
     }
 
-    /// Rounds so far.
+    /// Returns the number of rounds so far.
     pub const fn rounds(&self) -> u32 {
         self.round
     }
 
-    /// What grows the tree as it is now: what was asked, the changes until now, and as many rounds as were grown.
+    /// Returns the spec that grows the tree as it is now: the original one, with the changes until now and the number
+    /// of rounds grown.
     pub fn record(&self) -> GuidedSpec {
         let changes = self.asked.changes.iter().filter(|c| c.round < self.round).cloned().collect();
         GuidedSpec { rounds: self.round, changes, ..self.asked.clone() }
     }
 
-    /// The tree as it is now, without the twigs that are shed at the end. It may grow on.
+    /// Returns the tree as it is now, without the twigs that are shed at the end. It may grow on.
     pub fn finish(&self) -> Guided {
         let skeleton = self.shed();
         debug_assert_eq!(skeleton.validate().next(), None, "a grown skeleton is sound");
         Guided { skeleton, markers: self.markers_made, died: self.died, rounds: self.grew }
     }
 
-    /// One round; whether any bud is left that may still grow.
+    /// Grows one round; returns whether any bud may still grow.
     fn grow(&mut self, round: u32, run: &Run<'_>) -> Result<bool, GrowthError> {
         let awake = (0_u32..).zip(&self.buds).filter(|(_, bud)| bud.wakes <= round);
         let awake: Vec<u32> = awake.map(|(b, _)| b).collect();
@@ -503,17 +504,17 @@ impl Growing {
         Ok(!self.buds.is_empty())
     }
 
-    /// Direction and free space of a bud.
+    /// Returns direction and free space of a bud.
     fn look(&self, sums: &Sums, heading: DVec3) -> Look {
         if sums.own <= 0.0 {
             return Look { dies: true, ..Look::default() };
         }
         let spec = &self.spec;
         let v = sums.pull - sums.push * spec.repulsion + self.numbers.pull * sums.whole;
-        // Half of the markers in a wall is half of the room.
+        // If half of the markers are in a wall, half of the room remains.
         let room = sums.own / f64::from(spec.markers);
         let crowd = sums.older / sums.own;
-        // Guided, markers fill the tube only, however narrow: what counts is whom it is shared with.
+        // With strokes, markers fill only the tube, however narrow: only the competition with others counts.
         let room = if self.room.is_guided() { room.sqrt() } else { room };
         Look {
             direction: v.normalize_or(heading),
@@ -522,7 +523,8 @@ impl Growing {
         }
     }
 
-    /// Vigour of the awake buds: `alpha` times the free space of each tree, shared at its forks (Palubicki 2009, 4.2).
+    /// Distributes vigour to the active buds: `alpha` times the free space of each tree, shared at its forks (Palubicki
+    /// 2009, 4.2).
     fn share(&mut self, awake: &[u32], looks: &[Look]) -> Vec<f64> {
         let n = self.skeleton.len();
         let flow = &mut self.flow;
@@ -588,14 +590,15 @@ impl Growing {
             let to =
                 if obstacles.is_empty() { Some(direction) } else { obstacles.steer(at, direction, length) };
             let place = to.map(|to| at + to * length);
-            let Some((to, place)) = to.zip(place).filter(|(_, p)| self.room.at(*p, &mut near).is_some())
+            let Some((to, place)) =
+                to.zip(place).filter(|(_, p)| self.room.guide_at(*p, &mut near).is_some())
             else {
                 self.buds[b].lives = false;
                 return;
             };
             let joint = self.skeleton.push(place, JointId::new(from), birth);
             self.is_main.push(bud.terminal);
-            // The bud is at the tip of its shoot now, and the shoot goes on as its own axis.
+            // The bud is now at the tip of its shoot, which continues as its own axis.
             let side = (bud.side - to * bud.side.dot(to)).try_normalize();
             let tip = Bud {
                 joint: joint.raw(),
@@ -610,7 +613,7 @@ impl Growing {
         }
     }
 
-    /// Axillary buds of a new joint, around it by phyllotaxis.
+    /// Sets axillary buds on a new joint, around it by phyllotaxis.
     fn set_buds(&mut self, tip: Bud, birth: u32) {
         let place = self.skeleton.position[tip.joint as usize];
         let key = self.seed.child(place_key(place));
@@ -636,7 +639,7 @@ impl Growing {
         }
     }
 
-    /// Without short twigs that have stopped, and then without what has become a short twig, until none is left.
+    /// Removes short twigs that have stopped, repeatedly as others become short twigs, until none is left.
     fn shed(&self) -> Skeleton {
         let most = self.spec.shed_up_to as usize;
         let n = self.skeleton.len();

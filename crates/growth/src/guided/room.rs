@@ -1,4 +1,4 @@
-//! Where buds may find room: an envelope, and the tubes of brush strokes.
+//! Room of buds: an envelope, and the tubes of brush strokes.
 
 use base::{Budget, Counted, ops};
 use geom::KdTree;
@@ -8,7 +8,7 @@ use super::spec::{BrushStroke, GuidedSpec};
 use crate::envelope::Region;
 use crate::{GrowthError, Obstacles};
 
-/// One place of a stroke.
+/// One point of a stroke.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     from: DVec3,
@@ -34,7 +34,7 @@ pub(super) struct Room {
     obstacles: Obstacles,
 }
 
-/// What a stroke adds to a marker in it.
+/// Guidance of a marker by a stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Guide {
     /// `w' = exp(-d'^2 / (2 sigma_b^2))`, `sigma_b` half the radius.
@@ -71,7 +71,7 @@ impl Tubes {
                 }));
             }
         }
-        // Everything in a piece's tube is at most its radius and half of its length from its middle.
+        // Everything in a piece's tube is within its radius and half of its length of its centre.
         let reach = pieces
             .iter()
             .map(|p| p.radius.0.max(p.radius.1) + 0.5 * p.from.distance(p.to))
@@ -80,7 +80,7 @@ impl Tubes {
         Ok((!pieces.is_empty()).then(|| Self { grid: KdTree::new(&middles), pieces, reach }))
     }
 
-    /// The strongest guide at a point; none outside every tube.
+    /// Returns the strongest guide at a point; `None` outside every tube.
     fn guide(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
         self.grid.within(p, self.reach, near);
         let mut best: Option<Guide> = None;
@@ -110,7 +110,7 @@ impl Room {
         Ok(Self { region, tubes: Tubes::new(&spec.strokes, budget)?, obstacles: obstacles.clone() })
     }
 
-    /// Other strokes in the place of those that guide.
+    /// Replaces the guiding strokes.
     pub(super) fn set_strokes(
         &mut self,
         strokes: &[BrushStroke],
@@ -120,7 +120,7 @@ impl Room {
         Ok(())
     }
 
-    /// Whether the envelope alone decides where markers may be.
+    /// Whether the envelope alone decides the places of markers.
     pub(super) fn is_plain(&self) -> bool {
         self.tubes.is_none() && self.obstacles.is_empty()
     }
@@ -134,8 +134,9 @@ impl Room {
         }
     }
 
-    /// What guides a marker at a point; `None` where none may be. Without strokes, weight 1 and no direction.
-    pub(super) fn at(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
+    /// Returns the guide of a marker at a point; `None` if no marker may be there. Without strokes, weight 1 and no
+    /// direction.
+    pub(super) fn guide_at(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
         if !self.surrounds(p) {
             return None;
         }
@@ -148,7 +149,7 @@ impl Room {
         }
     }
 
-    /// Whether a marker may be anywhere in a ball, and nothing guides it there; false where that is not sure.
+    /// Whether a marker may be anywhere in a ball, without guidance; false if that is uncertain.
     pub(super) fn is_open(&self, p: DVec3, radius: f64) -> bool {
         self.tubes.is_none()
             && self.obstacles.is_empty()
@@ -158,17 +159,17 @@ impl Room {
                 .is_none_or(|(region, roots)| roots.iter().any(|r| region.contains_ball(p - *r, radius)))
     }
 
-    /// What growth goes around.
+    /// Returns the obstacles of growth.
     pub(super) const fn obstacles(&self) -> &Obstacles {
         &self.obstacles
     }
 
-    /// Whether strokes guide.
+    /// Whether there are guiding strokes.
     pub(super) const fn is_guided(&self) -> bool {
         self.tubes.is_some()
     }
 
-    /// How high above a root the envelope starts; 0 without one.
+    /// Returns the height above a root at which the envelope starts; 0 without one.
     pub(super) fn foot(&self) -> f64 {
         self.region.as_ref().map_or(0.0, |(region, _)| region.foot())
     }

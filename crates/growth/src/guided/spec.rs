@@ -1,4 +1,4 @@
-//! What guided growth is asked.
+//! Settings of guided growth.
 
 use glam::DVec3;
 use plant::Phyllotaxis;
@@ -40,13 +40,13 @@ pub struct GuidedSpec {
     pub internode_m: f64,
     /// The space of the crown, relative to the root; default none: growth ends with its rounds.
     pub envelope: Option<Envelope>,
-    /// Strokes that guide it; with any, buds grow only inside them. Default none.
+    /// Strokes that guide growth; with any, buds grow only inside them. Default none.
     pub strokes: Vec<BrushStroke>,
-    /// Markers of one bud in one round, N, 4 to 10000, default 60. The paper speaks of about 1300: more markers only
-    /// make the course of a shoot straighter, by 34 degrees over the root of N.
+    /// Markers of one bud in one round, N, 4 to 10000, default 60. The paper states about 1300: more markers only make
+    /// the course of a shoot straighter, by 34 degrees over the root of N.
     #[schemars(range(min = 4, max = 10000))]
     pub markers: u32,
-    /// Occupancy radius, in internodes, 0 to 100, default 2: nearer to a bud there are no markers.
+    /// Occupancy radius, in internodes, 0 to 100, default 2: there are no markers nearer to a bud.
     #[schemars(range(min = 0.0, max = 100.0))]
     pub near: f64,
     /// Perception radius, in internodes, above `near` and at most 100, default 5.
@@ -55,7 +55,7 @@ pub struct GuidedSpec {
     /// Half the opening of the perception cone, 1 to 180 degrees, default 45.
     #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "deg"))]
     pub half_angle_deg: f64,
-    /// How strongly others' markers push away, `k_r`, 0 to 10, default 1.
+    /// Strength of the repulsion by others' markers, `k_r`, 0 to 10, default 1.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub repulsion: f64,
     /// Weight and light, `k_g g`; relative to the pull of free space. Default 0.12 upwards.
@@ -66,9 +66,9 @@ pub struct GuidedSpec {
     /// Share of the main axis at a fork, 0 to 1, default 0.54.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub lambda: f64,
-    /// How buds stand, default a golden spiral.
+    /// Arrangement of the buds, default a golden spiral.
     pub arrangement: Arrangement,
-    /// Between a shoot and the buds at its side, 0 to 180 degrees, default 55.
+    /// Angle between a shoot and its lateral buds, 0 to 180 degrees, default 55.
     #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
     pub branch_angle_deg: f64,
     /// Standard deviation of that angle and of the azimuths, 0 to 60 degrees, default 6.
@@ -77,23 +77,23 @@ pub struct GuidedSpec {
     /// Most internodes of one shoot in one round, 1 to 100, default 3.
     #[schemars(range(min = 1, max = 100))]
     pub most_per_shoot: u32,
-    /// Twigs of at most so many internodes that stopped growing are shed at the end, 0 (none) to 1000; default 1.
+    /// Most internodes of stopped twigs that are shed at the end, 0 (none) to 1000; default 1.
     #[schemars(range(min = 0, max = 1000))]
     pub shed_up_to: u32,
     /// Most joints, default 1 million.
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
-    /// Other numbers from some round on, in ascending order of rounds: the record of a hand that turned them while the
+    /// Changes of numbers from some round on, in ascending order of rounds: the record of the user's changes while the
     /// tree grew. Default none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<GuidedChange>,
 }
 
-/// Numbers of [`GuidedSpec`] that change while a tree grows; what is left out stays as it was.
+/// Numbers of [`GuidedSpec`] that change while a tree grows; numbers that are left out stay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuidedChange {
-    /// The first round that has them, from 0, at most 1000.
+    /// The first round with these numbers, from 0, at most 1000.
     #[schemars(range(min = 0, max = 1000))]
     pub round: u32,
     /// Vigour per unit of free space, above 0 and at most 100.
@@ -104,11 +104,11 @@ pub struct GuidedChange {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub lambda: Option<f64>,
-    /// Between a shoot and the buds at its side, 0 to 180 degrees.
+    /// Angle between a shoot and its lateral buds, 0 to 180 degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
     pub branch_angle_deg: Option<f64>,
-    /// How strongly others' markers push away, 0 to 10.
+    /// Strength of the repulsion by others' markers, 0 to 10.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 10.0))]
     pub repulsion: Option<f64>,
@@ -119,18 +119,18 @@ pub struct GuidedChange {
     /// Weight and light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tropisms: Option<Vec<Tropism>>,
-    /// All strokes that guide from then on.
+    /// All guiding strokes from then on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strokes: Option<Vec<BrushStroke>>,
 }
 
 impl GuidedChange {
-    /// Whether its numbers are within their ranges, beside the defaults of all others.
+    /// Whether its numbers are within their ranges, with the defaults of all others.
     pub fn is_sound(&self) -> bool {
         GuidedSpec { changes: vec![self.clone()], ..GuidedSpec::default() }.check().is_ok()
     }
 
-    /// The numbers after it.
+    /// Returns the numbers after this change.
     pub(super) fn applied(&self, spec: &GuidedSpec) -> GuidedSpec {
         let Self { round: _, alpha, lambda, branch_angle_deg, repulsion, markers, tropisms, strokes } = self;
         GuidedSpec {
@@ -175,12 +175,12 @@ impl Default for GuidedSpec {
 }
 
 impl GuidedSpec {
-    /// For a whole tree whose crown fills an envelope: some 10,000 internodes, whatever its size.
+    /// Returns the settings for a whole tree whose crown fills an envelope: some 10,000 internodes, whatever its size.
     ///
-    /// The default is a young shoot's: its internodes are long and its rounds few, so that a hand can follow it. Here
+    /// The default is a young shoot's: its internodes are long and its rounds few, so that a user can follow it. Here
     /// internodes are a thirty-eighth of the envelope's mean extent (a ninetieth of its longest, if that is more),
     /// rounds enough to reach its ends, and vigour, pull and markers such that a crown is full and its leader upright.
-    /// An envelope that is wrong keeps the default numbers; growth then says what is wrong with it.
+    /// An invalid envelope keeps the default numbers; growth then reports its fault.
     pub fn of_crown(envelope: Envelope) -> Self {
         let envelope = envelope.whole();
         let size = envelope.prepare().map_or(DVec3::ZERO, |region| {
@@ -188,12 +188,12 @@ impl GuidedSpec {
             hi - lo
         });
         let plain = Self { envelope: Some(envelope), ..Self::default() };
-        // Slender crowns have longer internodes for their volume: else a leader takes hundreds of rounds.
+        // Slender crowns have longer internodes for their volume: otherwise a leader takes hundreds of rounds.
         let internode_m = (base::ops::cbrt(size.x * size.y * size.z) / 38.0).max(size.max_element() / 90.0);
         if !(1e-4..=1e3).contains(&internode_m) {
             return plain;
         }
-        // A leader makes about two internodes a round, one where it is crowded.
+        // A leader makes about two internodes per round, one if it is crowded.
         let rounds = (0.8 * size.max_element() / internode_m).clamp(36.0, 72.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "36 to 72")]
         Self {
@@ -208,7 +208,7 @@ impl GuidedSpec {
     }
 }
 
-/// What follows from checked numbers.
+/// Values derived from checked numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers {
     pub(super) phyllotaxis: Phyllotaxis,
@@ -233,7 +233,7 @@ impl GuidedSpec {
         Ok(numbers)
     }
 
-    /// What ranges do not say, of the numbers of one round.
+    /// Checks conditions beyond single ranges, on the numbers of one round.
     fn check_now(&self) -> Result<Numbers, GrowthError> {
         within("far", self.far, self.near, 100.0, "above `near` and at most 100 internodes")?;
         for stroke in &self.strokes {

@@ -1,4 +1,4 @@
-//! What guided growth promises.
+//! Tests of the guarantees of guided growth.
 
 use super::*;
 use crate::{Envelope, Obstacle};
@@ -117,7 +117,7 @@ fn crowns_of_any_size_are_filled() {
 
 #[test]
 fn buds_that_all_look_at_one_another_are_refused() {
-    // In so narrow a cone no bud is in another one's way, and all of them stand together.
+    // In such a narrow cone no bud obstructs another, and all of them stand together.
     let spec = GuidedSpec { half_angle_deg: 1.0, ..GuidedSpec::default() };
     let budget = base::Budget { times: 0.002, ..base::Budget::default() };
     let run = Run { budget, ..Run::plain() };
@@ -126,7 +126,7 @@ fn buds_that_all_look_at_one_another_are_refused() {
     assert!(matches!(over.what, Counted::MarkerQueries | Counted::Points), "{over}");
 }
 
-/// Rounds by hand, with these changes, each before its round.
+/// Grows rounds one by one, with these changes, each before its round.
 fn by_hand(rounds: u32, changes: &[GuidedChange]) -> (GuidedSpec, Guided) {
     let (none, run) = (Obstacles::none(), Run::plain());
     let mut growing =
@@ -172,7 +172,7 @@ fn a_record_grows_the_same_tree() {
         assert!(!grown.contains(&tree), "each change shows: {count}");
         grown.push(tree);
     }
-    // Held before its end, a record has nothing of what was to come.
+    // A record made before the end contains none of the later changes.
     let spec = GuidedSpec { rounds: 10, changes: changes.to_vec(), ..GuidedSpec::default() };
     let (none, run) = (Obstacles::none(), Run::plain());
     let mut growing = Growing::plant(&[DVec3::ZERO], &none, &spec, Seed::new(3), &run).expect("sound");
@@ -180,7 +180,7 @@ fn a_record_grows_the_same_tree() {
         growing.step(&run).expect("sound");
     }
     assert_eq!(growing.record(), by_hand(4, &changes).0);
-    // A hand that turns a number earlier takes the place of what was asked for later.
+    // An earlier change by the user replaces a later one of the spec.
     let turned = GuidedChange { alpha: Some(1.0), ..GuidedChange::default() };
     growing.change(turned, &run).expect("sound");
     while growing.rounds() < 10 {

@@ -1,4 +1,4 @@
-//! Rewriting: axiom -> modules, step by step, within bounds.
+//! Rewrites the axiom to modules, step by step, within bounds.
 
 use base::{Counted, Draw, Run, Seed};
 
@@ -10,10 +10,10 @@ use crate::error::LsystemError;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Modules {
     symbol: Vec<u8>,
-    /// Where each module's numbers end; they start where the one before ends.
+    /// End of each module's numbers; they start where the previous module's end.
     end: Vec<u32>,
     numbers: Vec<f64>,
-    /// What the draws of each module come from: its bearer's and its place in it.
+    /// Seed of the draws of each module, from its bearer's and its position in it.
     seed: Vec<Seed>,
 }
 
@@ -23,10 +23,10 @@ impl Modules {
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = (u8, &[f64])> {
-        (0..self.len()).map(|i| (self.symbol[i], self.of(i)))
+        (0..self.len()).map(|i| (self.symbol[i], self.parameters(i)))
     }
 
-    fn of(&self, i: usize) -> &[f64] {
+    fn parameters(&self, i: usize) -> &[f64] {
         let start = if i == 0 { 0 } else { self.end[i - 1] as usize };
         &self.numbers[start..self.end[i] as usize]
     }
@@ -46,7 +46,7 @@ impl Modules {
     }
 }
 
-/// Rewrites the axiom; the modules of the last step.
+/// Rewrites the axiom; returns the modules of the last step.
 pub(super) fn derive(
     system: &Lsystem,
     most: usize,
@@ -57,7 +57,7 @@ pub(super) fn derive(
     let mut stack = Vec::new();
     for (w, i) in system.axiom.iter().zip(0..) {
         write(w, &[], seed.child(i), seed.child(i), &mut next, &mut stack);
-        if next.of(next.len() - 1).iter().any(|x| !x.is_finite()) {
+        if next.parameters(next.len() - 1).iter().any(|x| !x.is_finite()) {
             return Err(LsystemError::NotFinite { rule: "axiom".into(), line: 0 }.into());
         }
     }
@@ -75,13 +75,13 @@ pub(super) fn derive(
             if i % 4096 == 0 {
                 run.cancel.check()?;
             }
-            let (symbol, numbers, own) = (now.symbol[i], now.of(i), now.seed[i]);
+            let (symbol, numbers, own) = (now.symbol[i], now.parameters(i), now.seed[i]);
             let rules = by_symbol[usize::from(symbol)].iter().map(|&r| (r, &system.rules[r]));
             let (fits, chosen) = choose(rules, numbers, own, &mut stack);
             matched |= fits;
             let Some((r, rule)) = chosen else {
                 next.numbers.extend_from_slice(numbers);
-                // A module that waits draws anew in the next step.
+                // A module that waits draws again in the next step.
                 next.push(symbol, own.child(u64::MAX));
                 continue;
             };
@@ -89,7 +89,7 @@ pub(super) fn derive(
             if next.len() + rule.successor.len() > most {
                 return Err(too_large(system, &made, step, most).into());
             }
-            // Looked at now and then: one rule writes few modules.
+            // Checked occasionally: one rule writes few modules.
             if i % 1024 == 0 {
                 let all = next.len() as u64;
                 run.budget.check(Counted::Joints, all, "take fewer steps or lower most_modules")?;
@@ -112,7 +112,7 @@ fn no_match(system: &Lsystem, modules: &Modules) -> LsystemError {
         let mut named: Vec<(char, usize)> = Vec::new();
         for (symbol, numbers) in kinds {
             let kind = (char::from(symbol), numbers);
-            // Brackets are never rewritten; of many kinds the first ones say enough.
+            // Brackets are never rewritten; if there are many kinds, the first ones suffice.
             if !b"[]".contains(&symbol) && named.len() < 6 && !named.contains(&kind) {
                 named.push(kind);
             }
@@ -139,7 +139,7 @@ fn write(w: &Written, given: &[f64], seed: Seed, draws: Seed, to: &mut Modules, 
     to.push(w.symbol, seed);
 }
 
-/// Whether a rule fits a module, and the one for it: among those that fit, by their chances.
+/// Returns whether any rule matches a module, and the chosen one: among the matching ones, by their probabilities.
 fn choose<'a>(
     rules: impl Iterator<Item = (usize, &'a Rule)> + Clone,
     numbers: &[f64],
@@ -166,7 +166,7 @@ fn choose<'a>(
     if count == 0 || (count == 1 && whole >= 1.0) {
         return (count > 0, only);
     }
-    // Chances below 1 in all leave the module as it is for the rest.
+    // If the probabilities sum to less than 1, the module stays unchanged with the rest.
     let mut at = seed.stream(Draw::Template).uniform() * f64::max(whole, 1.0);
     for (r, rule) in rules {
         if fits(rule) {

@@ -1,11 +1,11 @@
-//! Arithmetic in rules: text -> postfix code -> number.
+//! Arithmetic in rules: text to postfix code to number.
 
 use base::ops;
 use base::{Draw, Seed};
 
 use crate::error::RuleFault;
 
-/// Parentheses and operators inside one another beyond this are a slip or an attack.
+/// Deepest nesting of parentheses and operators: more is a mistake or an attack.
 const DEEPEST: usize = 64;
 
 /// One step of postfix code.
@@ -18,11 +18,11 @@ enum Op {
     Not,
     Binary(Binary),
     Call(Function),
-    /// A draw from so many quantiles at even shares, the least first.
+    /// A draw from this number of quantiles at even shares, the least first.
     Drawn(usize),
 }
 
-/// Quantiles of one draw: more tell nothing that trees show.
+/// Most quantiles of one draw: more make no visible difference in trees.
 const MOST_QUANTILES: usize = 64;
 /// The name of a draw from quantiles.
 const DRAWN: &str = "drawn";
@@ -78,7 +78,7 @@ impl Function {
 pub(super) struct Expression(Vec<Op>);
 
 impl Expression {
-    /// Its value; what cannot be computed is NaN. `seed` feeds `rand` and `normal`.
+    /// Returns its value; NaN if it cannot be computed. `seed` feeds `rand` and `normal`.
     pub(super) fn value(&self, parameters: &[f64], seed: Seed, stack: &mut Vec<f64>) -> f64 {
         stack.clear();
         let mut draws = 0;
@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
         Self { text: text.as_bytes(), at: 0, parameters, constants, code: Vec::new(), depth: 0 }
     }
 
-    /// One expression, up to a character that cannot belong to it.
+    /// Reads one expression, up to a character that cannot belong to it.
     pub(super) fn expression(&mut self) -> Result<Expression, RuleFault> {
         self.code.clear();
         self.level(0)?;
@@ -182,7 +182,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// Operators by rising binding: or, and, comparisons, sums, products; powers bind to the right.
+    /// Reads operators by rising precedence: or, and, comparisons, sums, products; powers associate to the right.
     fn level(&mut self, level: usize) -> Result<(), RuleFault> {
         const LEVELS: [&[(&str, Binary)]; 5] = [
             &[("||", Binary::Or)],
@@ -202,7 +202,7 @@ impl<'a> Reader<'a> {
         self.level(level + 1)?;
         loop {
             self.skip_space();
-            // The arrow of a rule is no minus sign.
+            // The arrow of a rule does not start with a minus sign.
             if self.text[self.at..].starts_with(b"->") {
                 return Ok(());
             }
@@ -277,7 +277,7 @@ impl<'a> Reader<'a> {
         self.name(&name)
     }
 
-    /// The numbers of [`DRAWN`], at least two.
+    /// Reads the arguments of [`DRAWN`], at least two.
     fn quantiles(&mut self) -> Result<(), RuleFault> {
         if !self.take("(") {
             return Err(RuleFault::NotCalled(DRAWN));

@@ -5,14 +5,14 @@ use glam::DVec3;
 use super::expr::{Expression, Reader};
 use crate::error::{LsystemError, RuleFault};
 
-/// Parameters of one module: more are a slip.
+/// Most parameters of one module: more are a mistake.
 const MOST_PARAMETERS: usize = 8;
-/// Rewriting steps. Each copies all modules, of which there may be many more than a step makes.
+/// Most rewriting steps. Each copies all modules, of which there may be far more than a step makes.
 const MOST_STEPS: u32 = 1000;
-/// What a rule may not rewrite: brackets, and the marks that the grammar itself uses.
+/// Characters that a rule may not rewrite: brackets, and the symbols of the grammar itself.
 const RESERVED: &[u8] = b"[](),;#";
 
-/// A module as a rule writes it.
+/// A module as written in a rule.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Written {
     pub(super) symbol: u8,
@@ -32,7 +32,7 @@ pub(super) struct Rule {
     pub(super) successor: Vec<Written>,
 }
 
-/// An L-system that was read.
+/// An L-system read from text.
 ///
 /// ```
 /// let text = "axiom = A(1)\nsteps = 3\nA(x) if x > 0.1 -> F(x) [ +(30) A(x / 2) ] A(x * 0.8)";
@@ -46,47 +46,48 @@ pub struct Lsystem {
     pub(super) rules: Vec<Rule>,
     /// Rewriting steps.
     pub steps: u32,
-    /// What turns without a number turn by, degrees; default 25.
+    /// Angle of turns without a number, degrees; default 25.
     pub angle_deg: f64,
     /// Length of `F` without a number, metres; default 0.2.
     pub length_m: f64,
     /// Diameter at the start, metres; 0, the default, leaves radii to the pipe model.
     pub width_m: f64,
-    /// Direction and strength of what bends every step; default none.
+    /// Direction and strength of a tropism that bends every step; default none.
     pub tropism: (DVec3, f64),
-    /// What a younger plant is; default the whole grown back.
+    /// Derivation of a younger plant; default from the whole plant.
     pub ages: Ages,
 }
 
-/// What makes a plant of rules younger.
+/// Derivation of a younger plant of rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ages {
-    /// The whole is grown back, whatever the rules say.
+    /// The whole plant is scaled back, whatever the rules say.
     #[default]
     Whole,
     /// Fewer steps.
     Steps,
-    /// The rules, which know the share of its life that it has lived.
+    /// The rules themselves, which read the elapsed share of the plant's life.
     Rules,
 }
 
-/// The name by which rules know the share of a plant's life, above 0 to 1.
+/// Name under which rules read the share of a plant's life, above 0 to 1.
 const LIFE: &str = "life";
 
 impl Lsystem {
     /// Reads an L-system.
     ///
-    /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 1000, default 5),
+    /// One statement per line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 1000, default 5),
     /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`,
-    /// `ages = steps` (a plant at a share of its years is what that share of the steps makes: for rules that follow growth),
-    /// `ages = rules` (it is what the rules make of `life`, the share of its years, which is 1 for the whole and known to
-    /// the statements below).
-    /// Rules: `A(x, y) if CONDITION prob NUMBER -> MODULES`; `if` and `prob` may be left out. Rules for the same
-    /// module share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one
-    /// character, with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)`
-    /// `^(a)` down and up, `\(a)` `/(a)` roll, `|` turn around, `$` roll level, `!(d)` diameter, `L(s)` leaf and
-    /// `*(s)` flower of that scale, `[` `]` branch. All others are skipped. `rand(a, b)` is even between two numbers, `normal(m, s)` has a
-    /// mean and a deviation, and `drawn(least, ..., greatest)` has 2 to 64 quantiles at even shares. Prusinkiewicz and Lindenmayer 1990, chapters 1 and 2.
+    /// `ages = steps` (a plant at a share of its years is the result of that share of the steps: for rules that follow
+    /// growth), `ages = rules` (it is the result of the rules with `life`, the share of its years, which is 1 for the
+    /// whole and available to the statements below).
+    /// Rules: `A(x, y) if CONDITION prob NUMBER -> MODULES`; `if` and `prob` may be left out. Rules for the same module
+    /// share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one character,
+    /// with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)` `^(a)` down and
+    /// up, `\(a)` `/(a)` roll, `|` turn around, `$` roll level, `!(d)` diameter, `L(s)` leaf and `*(s)` flower of that
+    /// scale, `[` `]` branch. All others are skipped. `rand(a, b)` is uniform between two numbers, `normal(m, s)` has a
+    /// mean and a deviation, and `drawn(least, ..., greatest)` has 2 to 64 quantiles at even shares. Prusinkiewicz and
+    /// Lindenmayer 1990, chapters 1 and 2.
     ///
     /// # Errors
     /// [`LsystemError`] with the line.
@@ -94,7 +95,7 @@ impl Lsystem {
         Self::parse_at(text, 1.0)
     }
 
-    /// As [`Self::parse`], for a plant at a share of its life, 0 to 1, which rules with `ages = rules` know as `life`.
+    /// As [`Self::parse`], for a plant at a share of its life, 0 to 1, which rules with `ages = rules` read as `life`.
     ///
     /// # Errors
     /// [`LsystemError`] with the line.
@@ -195,7 +196,7 @@ impl Lsystem {
     }
 }
 
-/// A constant expression.
+/// Evaluates a constant expression.
 fn evaluate(text: &str, constants: &[(String, f64)]) -> Result<f64, RuleFault> {
     let mut reader = Reader::new(text, &[], constants);
     let e = reader.expression()?;
@@ -276,7 +277,7 @@ fn read_modules(
             _ => {}
         }
         let mut arguments = Vec::new();
-        // A parenthesis belongs to a module only if it follows at once.
+        // A parenthesis belongs to a module only if it follows immediately.
         if text.as_bytes().get(reader.at) == Some(&b'(') {
             reader.at += 1;
             loop {

@@ -18,7 +18,7 @@ pub use grammar::{Ages, Lsystem};
 /// A leaf or a flower that the turtle set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeafMark {
-    /// Where.
+    /// Joint that bears it.
     pub joint: JointId,
     /// From root to tip, unit.
     pub heading: DVec3,
@@ -26,14 +26,14 @@ pub struct LeafMark {
     pub up: DVec3,
     /// Relative size.
     pub scale: f64,
-    /// A flower, not a leaf.
+    /// Whether it is a flower, not a leaf.
     pub flower: bool,
 }
 
-/// What an L-system made.
+/// Result of an L-system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LsystemTree {
-    /// All trees; radii where the rules set diameters.
+    /// All trees; with radii if the rules set diameters.
     pub skeleton: Skeleton,
     /// Leaves and flowers.
     pub leaves: Vec<LeafMark>,
@@ -41,16 +41,16 @@ pub struct LsystemTree {
     pub modules: usize,
 }
 
-/// An oak: short trunk, wide limbs that zigzag and droop a little under their weight, leaves at the ends.
+/// An oak: short trunk, wide limbs that zigzag and droop slightly under their weight, leaves at the ends.
 pub const OAK_RULES: &str = include_str!("oak.lsys");
 
 /// Grows one tree from each root; stochastic rules draw anew for each.
 ///
-/// Guaranteed: at most `most_modules` (1 to 100 million) modules; a clean `validate()`; rewriting one module draws
-/// nothing that another one's depends on.
+/// Guaranteed: at most `most_modules` (1 to 100 million) modules; a clean `validate()`; the rewriting of one module
+/// draws nothing on which another depends.
 ///
 /// # Errors
-/// [`GrowthError::Lsystem`] where rules explode or give numbers that are not finite, with the rule;
+/// [`GrowthError::Lsystem`] if rules explode or give numbers that are not finite, with the rule;
 /// [`GrowthError::NoRoots`], [`GrowthError::Root`]; cancelled.
 ///
 /// ```
@@ -116,7 +116,8 @@ mod tests {
         let tree = grow("axiom = F(1) [ +(90) F(2) L(0.5) ] &(90) F(3)\nsteps = 0", 1).expect("sound");
         let p = &tree.skeleton.position;
         assert_eq!(p.len(), 4);
-        // Left of a turtle that heads up and has its back to the viewer is -x; down from there is away from up.
+        // To the left of a turtle that heads up and has its back to the viewer is -x; downwards from there is away from
+        // up.
         assert!(p[2].distance(DVec3::new(-2.0, 1.0, 0.0)) < 1e-12, "{}", p[2]);
         assert!(p[3].distance(DVec3::new(0.0, 1.0, -3.0)) < 1e-12, "{}", p[3]);
         assert_eq!(
@@ -204,11 +205,11 @@ mod tests {
             assert!(said.as_ref().is_err_and(|said| said.contains(&want)), "{text}: {said:?}");
         }
         let told =
-            grow("axiom = A(1,2) [ B ]\nA(x) -> F(x)", 1).map(|_| ()).map_err(|e| base::Coded::told(&e));
+            grow("axiom = A(1,2) [ B ]\nA(x) -> F(x)", 1).map(|_| ()).map_err(|e| base::Coded::details(&e));
         let told = told.expect_err("no rule matches");
         let field = |name| told.fields[name].as_str();
         assert_eq!((told.code, field("there"), field("rules")), ("lsystem-no-match", "A(_, _), B", "A(_)"));
-        // A rule that waits for its chance, and an axiom alone, are no slips.
+        // A rule that waits for its chance, and an axiom alone, are no mistakes.
         assert!(grow("axiom = A F\nsteps = 1\nA prob 0.001 -> F", 1).is_ok());
         assert!(grow("axiom = F(1)\nsteps = 0\nF -> F F", 1).is_ok() && grow("axiom = F(1)", 1).is_ok());
     }

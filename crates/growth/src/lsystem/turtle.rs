@@ -1,4 +1,4 @@
-//! Modules -> skeleton, leaves and flowers, by a turtle.
+//! Converts modules to a skeleton, leaves and flowers, by a turtle.
 
 use base::ops::{self, PI};
 use glam::DVec3;
@@ -17,7 +17,7 @@ struct Turtle {
     diameter: f64,
 }
 
-/// Walks the modules of one tree; a walk that leaves the world stops there. Whether it did.
+/// Walks the modules of one tree; a walk that leaves the world stops there. Returns whether it did.
 pub(super) fn draw(
     system: &Lsystem,
     modules: &Modules,
@@ -89,7 +89,7 @@ impl Turtle {
         self.up = self.heading.cross(self.left);
     }
 
-    /// Rolls until left is level.
+    /// Rolls until left is horizontal.
     fn level(&mut self) {
         let left = DVec3::Y.cross(self.heading);
         if left.length() > 1e-6 {
@@ -97,7 +97,7 @@ impl Turtle {
         }
     }
 
-    /// Torque of a steady pull: the angle is its strength times the sine between it and the heading.
+    /// Turns by the torque of a steady pull: the angle is its strength times the sine between it and the heading.
     fn bend(&mut self, (direction, strength): (DVec3, f64)) {
         let torque = self.heading.cross(direction);
         let size = torque.length();

@@ -6,18 +6,18 @@ use glam::DVec3;
 
 use crate::{JointId, Skeleton};
 
-/// No joint; of a bud: it grew into a branch that is gone, or never was.
+/// No joint; for a bud: it grew into a branch that was shed, or never existed.
 pub(super) const NONE: u32 = u32::MAX;
-/// Instead of the branch that a bud grew into: it still waits.
+/// In the place of a bud's branch: the bud still waits.
 pub(super) const WAITS: u32 = u32::MAX - 1;
 
 /// All trees of a run, by columns. Every joint ends an internode, may bear axillary buds, and carries the terminal bud
 /// if nothing continues its axis.
 #[derive(Clone, Debug)]
 pub(super) struct Grove {
-    /// While it grows, its radii stand for wood: the radius to the power of the pipe exponent, which never falls.
+    /// While it grows, its radii represent wood: the radius to the power of the pipe exponent, which never decreases.
     pub(super) skeleton: Skeleton,
-    /// What continues the axis.
+    /// The joint that continues the axis.
     pub(super) main: Vec<u32>,
     /// Direction in which the joint grew, and a unit vector across it, carried along the axis without twist.
     pub(super) heading: Vec<DVec3>,
@@ -32,7 +32,7 @@ pub(super) struct Grove {
     above: Vec<f64>,
 }
 
-/// Which joints stay when some are shed: runs of rows, and the new row of every old one.
+/// The joints that stay when some are shed: runs of rows, and the new row of every old one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
     runs: Vec<Range<usize>>,
@@ -40,7 +40,7 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// By one flag for each joint.
+    /// Sets the kept joints by one flag for each joint.
     pub(super) fn set(&mut self, stays: &[bool]) {
         self.runs.clear();
         self.new_row.clear();
@@ -58,7 +58,7 @@ impl Kept {
         }
     }
 
-    /// Closes the gaps of a column with `each` values a joint.
+    /// Closes the gaps of a column with `each` values per joint.
     pub(super) fn squeeze<T: Copy>(&self, column: &mut Vec<T>, each: usize) {
         let mut to = 0;
         for run in &self.runs {
@@ -82,7 +82,7 @@ impl Kept {
 impl Grove {
     pub(super) fn new(roots: Skeleton, per_node: usize) -> Self {
         let n = roots.len();
-        // What is there already is bole: each joint continues its parent.
+        // Existing joints are bole: each continues its parent.
         let mut main = vec![NONE; n];
         for (j, parent) in roots.parent.iter().enumerate() {
             if let Some(p) = parent {
@@ -121,7 +121,7 @@ impl Grove {
         self.parent(j).is_none_or(|p| self.main[p] as usize != j)
     }
 
-    /// Adds an internode with waiting buds; `bud` is the axillary bud it grows from, `None` for the terminal one.
+    /// Adds an internode with waiting buds; `bud` is the axillary bud from which it grows, `None` for the terminal one.
     pub(super) fn grow(
         &mut self,
         parent: usize,
@@ -149,7 +149,7 @@ impl Grove {
         id.index()
     }
 
-    /// Keeps some joints. The buds of branches that are gone do not sprout again.
+    /// Keeps some joints. The buds of shed branches do not sprout again.
     pub(super) fn keep(&mut self, kept: &Kept) {
         let s = &mut self.skeleton;
         kept.squeeze(&mut s.position, 1);
@@ -169,7 +169,7 @@ impl Grove {
         }
     }
 
-    /// `d^n = d1^n + d2^n`, never less than before (Palubicki 2009, section 4.6).
+    /// Thickens by `d^n = d1^n + d2^n`, never below the diameter before (Palubicki 2009, section 4.6).
     pub(super) fn thicken(&mut self, tip: f64) {
         let n = self.len();
         self.above.clear();

@@ -1,17 +1,18 @@
-//! Self-organising trees: buds compete for light or space, and the tree shares out what they gather.
+//! Self-organising trees: buds compete for light or space, and the tree distributes the gathered resource.
 //!
 //! `roots -> (light of buds -> shares -> shoots -> shedding -> wood) x years -> Skeleton` (Palubicki et al. 2009)
 
 mod grove;
 mod resource;
 mod shadow;
+mod sky;
 mod space;
 mod spec;
 
 use core::fmt::Display;
 
 use base::ops::{self, PI};
-use base::{Budget, Counted, Draw, OverBudget, Report, Run, Seed};
+use base::{Counted, Draw, Report, Run, Seed};
 use glam::DVec3;
 use plant::Phyllotaxis;
 
@@ -20,27 +21,28 @@ use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use grove::{Grove, Kept};
 use resource::{Fed, Flow, Sharing};
 use shadow::OUTSIDE;
+use sky::Sky;
 use space::Space;
 
 pub use self::spec::{Light, Resource, SelfOrganizingSpec};
 
 pub(crate) use shadow::ShadowGrid;
 
-/// What self-organising growth made.
+/// Result of self-organising growth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelfOrganized {
     /// All trees, with the radii that their wood has reached.
     pub skeleton: Skeleton,
-    /// Internodes ever grown, shed ones included.
+    /// Number of internodes ever grown, including shed ones.
     pub generated: usize,
-    /// Internodes shed.
+    /// Number of shed internodes.
     pub shed: usize,
 }
 
 /// Grows trees year by year, one from each root; they shade one another.
 ///
-/// Guaranteed: it ends; a clean `validate()`; no joint in an obstacle; radii that never fell; the tree of year n does
-/// not depend on how many years follow. Where there is too little shade trees multiply from year to year: growth then
+/// Guaranteed: it ends; a clean `validate()`; no joint in an obstacle; radii never decrease; the tree of year n does
+/// not depend on the number of years that follow. With too little shade trees multiply from year to year: growth then
 /// ends, with the warning `growth-too-much`, before the year that would exceed `max_joints`. Cost: linear in the
 /// internodes of each year.
 ///
@@ -74,6 +76,9 @@ pub fn self_organize(
             let grid = ShadowGrid::new(voxel, *a, *b, *layers);
             LightModel::Shadow(Shade { grid, full: *full, voxel: Vec::new() })
         }
+        Light::Sky { leaf_m, lines, full } => {
+            LightModel::Sky(Box::new(Sky::new(leaf_m.unwrap_or(spec.internode_m), *lines, *full)?))
+        }
         Light::Space { envelope, markers, occupancy, perception, half_angle_deg } => {
             let reach = (occupancy * spec.internode_m, perception * spec.internode_m);
             let all = u64::from(*markers) * roots.len() as u64;
@@ -85,7 +90,7 @@ pub fn self_organize(
                 let own = region.scatter(*markers as usize, 0.0, seed.child(i), free)?;
                 places.extend(own.into_iter().map(|p| *root + p));
             }
-            // Markers begin where the crown does: without a bole no bud would see any.
+            // Markers begin at the foot of the crown: without a bole no bud would perceive any.
             for root in 0..roots.len() {
                 let foot = (region.foot() - reach.0).max(0.0);
                 grow_bole(&mut skeleton, JointId::new(root), foot, spec.internode_m, obstacles, run)?;
@@ -126,16 +131,16 @@ pub fn self_organize(
             report.warn_of("growth-too-much", &fields, too_much(spec, year, joints, next));
             break;
         }
-        // Later years have more to do.
+        // Later years take longer.
         let share = f64::from(year + 1) / f64::from(spec.years);
         run.cancel.reached(crate::GROWN * share * share);
     }
     let bare = forest.grove.skeleton.parent.iter().all(Option::is_none);
     if spec.years > 0 && (bare || forest.generated == 0) {
-        return Err(GrowthError::Nothing { why: forest.why_nothing(&run.budget)? });
+        return Err(GrowthError::Nothing { why: forest.why_nothing(run)? });
     }
     let Forest { mut grove, generated, shed, .. } = forest;
-    // Joints of one shoot are often alike.
+    // Consecutive joints of one shoot are often equal.
     let (mut wood, mut radius) = (0.0, 0.0);
     for r in &mut grove.skeleton.radius_m {
         if *r != wood {
@@ -148,13 +153,17 @@ pub fn self_organize(
     Ok(SelfOrganized { skeleton: grove.skeleton, generated, shed })
 }
 
-/// Why growth stopped before its last year, and which numbers to change.
+/// Explains why growth stopped before its last year, and which numbers to change.
 fn too_much(spec: &SelfOrganizingSpec, year: u32, joints: usize, next: usize) -> String {
     let (alpha, below, most, years) = (spec.alpha, spec.shed_below, spec.max_joints, spec.years);
     let cause = match &spec.light {
         Light::Shadow { a, full, .. } => format!(
             "so little shade lets too much of it sprout, raise light.a ({a}) or shed_below ({below}), or lower \
              light.full ({full}), alpha ({alpha}) or years"
+        ),
+        Light::Sky { full, .. } => format!(
+            "so little shade lets too much of it sprout, raise light.leaf_m or shed_below ({below}), or lower light.full \
+             ({full}), alpha ({alpha}) or years"
         ),
         Light::Space { .. } => format!("raise shed_below ({below}), or lower alpha ({alpha}) or years"),
     };
@@ -166,6 +175,7 @@ fn too_much(spec: &SelfOrganizingSpec, year: u32, joints: usize, next: usize) ->
 
 enum LightModel {
     Shadow(Shade),
+    Sky(Box<Sky>),
     Space(Space),
 }
 
@@ -174,7 +184,7 @@ struct Shade {
     grid: ShadowGrid,
     /// Light without any shadow.
     full: f64,
-    /// The voxel of each joint.
+    /// Voxel of each joint.
     voxel: Vec<u32>,
 }
 
@@ -196,13 +206,13 @@ struct Forest<'a> {
     kept: Kept,
     generated: usize,
     shed: usize,
-    /// Joints, and a share of the voxels, of all years so far.
+    /// Number of joints, and a share of the voxels, summed over all years so far.
     work: u64,
 }
 
 impl Forest<'_> {
-    /// Which number keeps every bud of a forest of bare roots asleep.
-    fn why_nothing(&mut self, budget: &Budget) -> Result<String, OverBudget> {
+    /// Explains which number keeps every bud of a forest of bare roots dormant.
+    fn why_nothing(&mut self, run: &Run<'_>) -> Result<String, GrowthError> {
         let (alpha, years, below) = (self.spec.alpha, self.spec.years, self.spec.shed_below);
         if self.generated > 0 {
             return Ok(format!(
@@ -210,7 +220,7 @@ impl Forest<'_> {
                  of any branch; lower it, or raise alpha ({alpha})"
             ));
         }
-        self.look(budget)?;
+        self.look(0, run)?;
         let light = self.bud_light.iter().copied().fold(0.0, f64::max);
         Ok(match &self.spec.light {
             _ if light > 0.0 && light * alpha >= 1.0 => {
@@ -220,6 +230,10 @@ impl Forest<'_> {
                 "no bud has the vigour of 1 that a shoot takes: light.full ({full}) less the shadow of light.a ({a}), \
                  times alpha ({alpha}), is {:.4}; raise light.full or alpha",
                 light * alpha
+            ),
+            Light::Sky { full, .. } => format!(
+                "no bud has the vigour of 1 that a shoot takes: the light of the brightest bud ({light:.4}), times alpha \
+                 ({alpha}); raise light.full ({full}) or alpha"
             ),
             Light::Space { perception, .. } if light <= 0.0 => format!(
                 "no bud sees a marker within light.perception ({perception} internodes); raise it, \
@@ -231,17 +245,22 @@ impl Forest<'_> {
         })
     }
 
-    /// The joints that there would be after this year if that is more than allowed: then nothing has sprouted.
+    /// Grows one year; returns the number of joints that there would be, if that exceeds the limit: then nothing has
+    /// sprouted.
     fn year(&mut self, year: u32, run: &Run<'_>) -> Result<Option<usize>, GrowthError> {
-        // A voxel of the light takes about a 64th of the time of a joint.
-        let voxels = if let LightModel::Shadow(shade) = &self.light { shade.grid.voxels() } else { 0 };
-        self.work += (self.grove.len() + voxels / 64) as u64;
+        let of_light = match &self.light {
+            // A voxel takes about a 64th of the time of a joint.
+            LightModel::Shadow(shade) => shade.grid.voxels() / 64,
+            LightModel::Sky(sky) => sky.work(self.grove.len()),
+            LightModel::Space(_) => 0,
+        };
+        self.work += (self.grove.len() + of_light) as u64;
         run.budget.check(
             Counted::JointYears,
             self.work,
             "lower years or max_joints (or make light.voxel_m larger)",
         )?;
-        self.look(&run.budget)?;
+        self.look(year, run)?;
         self.flow.gather(&self.grove, &self.bud_light);
         self.drop_dark_branches(year);
         let share = (f64::from(year) / f64::from(self.spec.lambda_years.max(1))).min(1.0);
@@ -263,8 +282,8 @@ impl Forest<'_> {
         Ok(None)
     }
 
-    /// Light of every bud.
-    fn look(&mut self, budget: &Budget) -> Result<(), OverBudget> {
+    /// Computes the light of every bud.
+    fn look(&mut self, year: u32, run: &Run<'_>) -> Result<(), GrowthError> {
         let n = self.grove.len();
         self.bud_light.clear();
         match &mut self.light {
@@ -274,8 +293,12 @@ impl Forest<'_> {
                 let light = voxel.iter().map(|v| (*full - grid.shade(*v) + own).max(0.0));
                 self.bud_light.extend(light);
             }
+            LightModel::Sky(sky) => {
+                sky.look(&self.grove.skeleton.position, self.seed.child(u64::from(year)), run)?;
+                self.bud_light.extend(sky.lights());
+            }
             LightModel::Space(space) => {
-                space.look(&self.grove, budget)?;
+                space.look(&self.grove, &run.budget)?;
                 self.bud_light.extend((0..n).map(|j| space.light_at(j)));
             }
         }
@@ -286,7 +309,7 @@ impl Forest<'_> {
     fn drop_dark_branches(&mut self, year: u32) {
         let n = self.grove.len();
         self.mean_light.resize(n, f64::NAN);
-        // The space model knows lit and dark only: there the mean of about five years decides.
+        // The space model has only lit and dark: the mean of about five years decides.
         let fresh = if matches!(self.light, LightModel::Space(_)) { 0.2 } else { 1.0 };
         let mut stays = core::mem::take(&mut self.stays);
         stays.clear();
@@ -324,28 +347,29 @@ impl Forest<'_> {
         kept.squeeze(&mut self.mean_light, 1);
         kept.squeeze(&mut self.bud_light, 1);
         match &mut self.light {
-            // What is shed no longer casts shadow; its light no longer counts below.
+            // Shed joints no longer cast shadow; their light no longer counts below.
             LightModel::Shadow(Shade { grid, voxel, .. }) => {
                 let gone = voxel.iter().zip(stays).filter(|(_, stays)| !**stays).map(|(v, _)| *v);
                 grid.add_all(gone, -1);
                 kept.squeeze(voxel, 1);
             }
+            LightModel::Sky(sky) => sky.keep(kept),
             LightModel::Space(space) => space.keep(kept),
         }
         self.flow.gather(&self.grove, &self.bud_light);
     }
 
-    /// Vigour that a shoot makes use of, never more than the spec allows: a seedling in full light would leap.
+    /// Returns the vigour that a shoot uses, at most that of the spec: a seedling in full light would grow too fast.
     fn used(&self, vigour: f64) -> f64 {
         vigour.min(f64::from(self.spec.most_per_shoot) + 0.999)
     }
 
-    /// Internodes that this year's vigour is enough for.
+    /// Returns the number of internodes for which this year's vigour suffices.
     fn sprouting(&self) -> usize {
         self.flow.fed.iter().map(|f| internodes(self.used(f.vigour)) as usize).sum()
     }
 
-    /// Buds with a vigour of 1 or more grow as many internodes.
+    /// Grows internodes from buds with a vigour of 1 or more, one for each unit.
     fn sprout(&mut self, birth: u32) {
         let n = self.grove.len();
         let fed = core::mem::take(&mut self.flow.fed);
@@ -366,6 +390,7 @@ impl Forest<'_> {
         let length = self.spec.internode_m * vigour / f64::from(n);
         let v = match &self.light {
             LightModel::Shadow(Shade { grid, voxel, .. }) => grid.slope(voxel[joint]).normalize_or_zero(),
+            LightModel::Sky(sky) => sky.towards(joint),
             LightModel::Space(space) => space.of_bud(joint, bud),
         };
         let mut heading = match bud {
@@ -390,7 +415,7 @@ impl Forest<'_> {
         }
     }
 
-    /// Lets the joints from `first` on cast shadow or take room.
+    /// Adds the shadow or the occupied space of the joints from `first` on.
     fn cast_from(&mut self, first: usize) {
         let all = &self.grove.skeleton.position;
         let fresh = &all[first..];
@@ -408,6 +433,8 @@ impl Forest<'_> {
                 }
                 grid.add_all(voxel[first..].iter().copied(), 1);
             }
+            // Leaves are set out anew each year.
+            LightModel::Sky(_) => {}
             LightModel::Space(space) => {
                 space.take_room(fresh);
                 let (spec, grove) = (self.spec, &self.grove);
@@ -419,13 +446,13 @@ impl Forest<'_> {
     }
 }
 
-/// Whole internodes of a vigour.
+/// Returns the whole internodes of a vigour.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to a hundred")]
 const fn internodes(vigour: f64) -> u32 {
     vigour as u32
 }
 
-/// Where the axillary buds of a joint would grow: around it by phyllotaxis. The same whenever it is asked for.
+/// Returns the directions of the axillary buds of a joint: around it by phyllotaxis. Every call gives the same.
 fn bud_headings(
     spec: &SelfOrganizingSpec,
     phyllotaxis: Phyllotaxis,

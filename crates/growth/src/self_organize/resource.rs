@@ -1,10 +1,10 @@
-//! How much each bud gets: the extended Borchert-Honda model and the priority model.
+//! Distribution of the resource to buds: the extended Borchert-Honda model and the priority model.
 //!
-//! `light of each bud -> summed towards the base -> vigour shared towards the tips`
+//! `light of each bud -> summed towards the base -> vigour distributed towards the tips`
 
 use super::grove::{Grove, NONE, WAITS};
 
-/// Which side of a fork gets how much.
+/// Rule of the distribution at a fork.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sharing {
     /// `lambda` for the main axis.
@@ -13,10 +13,10 @@ pub(super) enum Sharing {
     Rank { w_max: f64, w_min: f64, kappa: u32 },
 }
 
-/// Less vigour than this is not shared any further: a bud needs 1, and rounding does not add a thousandth.
+/// Vigour below which it is not distributed any further: a bud needs 1, and rounding does not add a thousandth.
 const SCANT: f64 = 0.999;
 
-/// A bud that has been given vigour.
+/// A bud that received vigour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fed {
     pub(super) joint: usize,
@@ -25,16 +25,16 @@ pub(super) struct Fed {
     pub(super) vigour: f64,
 }
 
-/// Sums and shares of one cycle; kept between cycles so that nothing is allocated.
+/// Sums and shares of one cycle; reused between cycles so that nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flow {
     /// Light gathered by each joint and all above it.
     pub(super) light: Vec<f64>,
-    /// Internodes of each joint's subtree, itself included.
+    /// Number of internodes of each joint's subtree, including itself.
     pub(super) size: Vec<f64>,
     /// Vigour that enters each joint.
     vigour: Vec<f64>,
-    /// The buds that it comes to, in the order of their joints, where it is more than scant.
+    /// The buds that receive it, in the order of their joints, if it is more than scant.
     pub(super) fed: Vec<Fed>,
     items: Vec<Item>,
 }
@@ -76,7 +76,7 @@ impl Flow {
         }
     }
 
-    /// Shares `alpha` times the light of each tree among its buds.
+    /// Distributes `alpha` times the light of each tree among its buds.
     pub(super) fn share(&mut self, grove: &Grove, bud_light: &[f64], alpha: f64, sharing: Sharing) {
         let n = grove.len();
         self.vigour.clear();
@@ -109,14 +109,14 @@ impl Flow {
         }
     }
 
-    /// `v_m = v lambda Q_m / (lambda Q_m + (1 - lambda) Q_l)`, and the rest to the laterals (section 4.2).
+    /// Splits `v_m = v lambda Q_m / (lambda Q_m + (1 - lambda) Q_l)`, with the rest for the laterals (section 4.2).
     fn share_fork(&mut self, grove: &Grove, bud_light: &[f64], j: usize, lambda: f64) {
         let v = self.vigour[j];
         let main = grove.main[j];
         let q_main = if main == NONE { bud_light[j] } else { self.light[main as usize] };
         let q_side = (self.light[j] - q_main).max(0.0);
         let (m, l) = (lambda * q_main, (1.0 - lambda) * q_side);
-        // A fork in the dark shares by lambda alone.
+        // A fork in the dark splits by lambda alone.
         let share = if m + l > 0.0 { m / (m + l) } else { lambda };
         if main == NONE {
             self.feed(j, None, v * share);
@@ -135,8 +135,8 @@ impl Flow {
         }
     }
 
-    /// The priority model: the tip of the axis first, then what it bears by falling light; weights fall linearly
-    /// from `w_max` to `w_min` at rank `kappa`.
+    /// Distributes by the priority model: the tip of the axis first, then its lateral buds and branches by decreasing
+    /// light; weights decrease linearly from `w_max` to `w_min` at rank `kappa`.
     fn share_axis(&mut self, grove: &Grove, bud_light: &[f64], start: usize, sharing: Sharing) {
         let Sharing::Rank { w_max, w_min, kappa } = sharing else { return };
         let v = self.vigour[start];

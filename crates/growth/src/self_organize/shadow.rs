@@ -1,17 +1,17 @@
-//! Shadow propagation: a voxel grid in which everything that grows darkens what is below it.
+//! Shadow propagation: a voxel grid in which everything that grows darkens the voxels below it.
 //!
 //! `joints -> corners of squares -> summed over each layer -> shadows`
 //!
-//! The shadow of one joint is a square in each layer below it. A square is written as its four corners only; the
+//! The shadow of one joint is a square in each layer below it. Only the four corners of a square are written; the
 //! running sums of a layer (Crow 1984), made once for all joints of a year, fill them in.
 
 use core::ops::Range;
 
 use glam::DVec3;
 
-/// Shadows are whole multiples of 2^-20: adding and taking away in any order gives the same bits.
+/// Units of shadow per 1, whole multiples of 2^-20: adding and subtracting in any order gives the same bits.
 const UNIT: f64 = 1_048_576.0;
-/// More voxels than this (two grids of 128 MiB) are not made; what grows beyond casts no shadow.
+/// Most voxels of a grid (two grids of 128 MiB); joints beyond cast no shadow.
 const MOST_VOXELS: usize = 1 << 25;
 /// The voxel of a place without one.
 pub(crate) const OUTSIDE: u32 = u32::MAX;
@@ -19,16 +19,16 @@ pub(crate) const OUTSIDE: u32 = u32::MAX;
 /// Shadow values over space; it grows with the trees. Palubicki et al. 2009, section 4.1.
 #[derive(Clone, Debug)]
 pub(crate) struct ShadowGrid {
-    /// Second differences of the shadow over each layer: layers of y, rows of z, x side by side.
+    /// Second differences of the shadow over each layer: layers of y, rows of z, x contiguous.
     corners: Vec<i32>,
     /// Shadow of each voxel in units of 2^-20, as it was at the last [`spread`](Self::spread).
     shadow: Vec<i32>,
-    /// What a joint adds q layers below itself: a b^-q.
+    /// Contribution of a joint q layers below itself: a b^-q.
     falling: Vec<i32>,
-    /// How far the numbers of the corners of that square are from the joint's own voxel; what is below 0 wraps.
+    /// Offsets of the corners of that square from the joint's own voxel; negative ones wrap.
     squares: Vec<[usize; 4]>,
     voxel_m: f64,
-    /// Place of voxel (0, 0, 0) in voxels.
+    /// Position of voxel (0, 0, 0) in voxels.
     origin: [i64; 3],
     dims: [usize; 3],
     /// Columns (x and z) that any shadow has ever reached, and layers whose corners have changed since `spread`.
@@ -37,7 +37,7 @@ pub(crate) struct ShadowGrid {
 }
 
 impl ShadowGrid {
-    /// `a` above 0, `b` above 1, `layers` the number of layers below the joint that it shades.
+    /// Creates an empty grid: `a` above 0, `b` above 1, `layers` the number of layers below a joint that it shades.
     pub(crate) fn new(voxel_m: f64, a: f64, b: f64, layers: u32) -> Self {
         let mut falling = Vec::with_capacity(layers as usize + 1);
         let mut s = a;
@@ -58,12 +58,12 @@ impl ShadowGrid {
         }
     }
 
-    /// How many there are.
+    /// Returns the number of voxels.
     pub(crate) const fn voxels(&self) -> usize {
         self.corners.len()
     }
 
-    /// Makes room for joints in a box; `voxels` get the numbers that they have then. Whether the grid has grown.
+    /// Extends the grid to joints in a box, and renumbers `voxels` accordingly. Returns whether the grid has grown.
     pub(crate) fn cover(&mut self, lo: DVec3, hi: DVec3, voxels: &mut [u32]) -> bool {
         let margin = self.falling.len() as i64 + 1;
         let from = self.voxel(lo).map(|v| v - margin);
@@ -73,7 +73,8 @@ impl ShadowGrid {
         if fits && !self.corners.is_empty() {
             return false;
         }
-        // The first time as large as it must be; later a quarter more on every side that must grow, so that it seldom does.
+        // The first time it gets its least size; later a quarter more on every side that must grow, so that it seldom
+        // does.
         let old = (self.origin, self.dims);
         let (mut origin, mut dims) = ([0; 3], [0; 3]);
         for i in 0..3 {
@@ -97,7 +98,7 @@ impl ShadowGrid {
             let [x, y, z] = self.coordinates(*voxel);
             *voxel = index(number(x, y, z));
         }
-        // Shadows are summed anew anyhow: the corners move to their memory, and they to that of the corners.
+        // Shadows are summed again anyway: the corners move to their memory, and they to that of the corners.
         core::mem::swap(&mut self.corners, &mut self.shadow);
         clear(&mut self.corners, most);
         let columns = self.used[0].clone();
@@ -135,8 +136,8 @@ impl ShadowGrid {
         self.add(last, joints);
     }
 
-    /// Casts the shadow of that many joints in a voxel, or takes it back (below 0): `a b^-q` for each on the square of
-    /// half width q in the q-th layer below. The indices are (i +- p, j - q, k +- p), p from 0 to q. Seen after
+    /// Casts the shadow of `joints` joints in a voxel, or removes it (below 0): `a b^-q` for each on the square of half
+    /// width q in the q-th layer below. The indices are (i +- p, j - q, k +- p), p from 0 to q. Visible after
     /// [`spread`](Self::spread). Nothing in [`OUTSIDE`].
     pub(crate) fn add(&mut self, voxel: u32, joints: i32) {
         if voxel == OUTSIDE {
@@ -157,12 +158,12 @@ impl ShadowGrid {
         stretch(&mut self.used[1], z - layers, z + layers + 1);
     }
 
-    /// Lets [`shade`](Self::shade) and [`slope`](Self::slope) know of every shadow cast and taken back. Cost: linear in
-    /// the voxels of the layers that these reach.
+    /// Makes every shadow that was cast or removed visible to [`shade`](Self::shade) and [`slope`](Self::slope). Cost:
+    /// linear in the voxels of the layers that these reach.
     pub(crate) fn spread(&mut self) {
         let (width, [columns, rows]) = (self.dims[0], self.used.clone());
         for layer in core::mem::replace(&mut self.stale, NONE) {
-            // The first row that is used has no shadow yet, nor has the column before the first.
+            // The first used row has no shadow yet, nor has the column before the first.
             for z in rows.clone().skip(1) {
                 let start = (layer * self.dims[2] + z) * width + columns.start;
                 let (before, here) = self.shadow.split_at_mut(start);
@@ -176,24 +177,24 @@ impl ShadowGrid {
         }
     }
 
-    /// The number of the voxel of a place, [`OUTSIDE`] if it or what it shades sideways lies beyond the grid.
+    /// Returns the number of the voxel of a place, [`OUTSIDE`] if it or its lateral shadow lies beyond the grid.
     pub(crate) fn voxel_of(&self, p: DVec3) -> u32 {
         self.inside(p).map_or(OUTSIDE, |[x, y, z]| index((y * self.dims[2] + z) * self.dims[0] + x))
     }
 
-    /// Of the voxel with this number.
+    /// Returns the coordinates of the voxel with this number.
     fn coordinates(&self, voxel: u32) -> [usize; 3] {
         let (row, x) = (voxel as usize / self.dims[0], voxel as usize % self.dims[0]);
         [x, row / self.dims[2], row % self.dims[2]]
     }
 
-    /// Shadow in a voxel; none in [`OUTSIDE`].
+    /// Returns the shadow in a voxel; 0 in [`OUTSIDE`].
     #[inline]
     pub(crate) fn shade(&self, voxel: u32) -> f64 {
         f64::from(self.shadow.get(voxel as usize).copied().unwrap_or(0)) / UNIT
     }
 
-    /// The way in which the shadow falls off fastest around a voxel (not normalised).
+    /// Returns the direction in which the shadow decreases fastest around a voxel (not normalised).
     pub(crate) fn slope(&self, voxel: u32) -> DVec3 {
         if voxel == OUTSIDE {
             return DVec3::ZERO;
@@ -205,7 +206,7 @@ impl ShadowGrid {
         DVec3::new(at(i - 1) - at(i + 1), below - at(i + layer), at(i - self.dims[0]) - at(i + self.dims[0]))
     }
 
-    /// What one joint adds to its own voxel: a.
+    /// Returns the contribution of one joint to its own voxel: a.
     pub(crate) fn own(&self) -> f64 {
         f64::from(self.falling[0]) / UNIT
     }
@@ -219,7 +220,7 @@ impl ShadowGrid {
         })
     }
 
-    /// The voxel of a place, if it and what it shades sideways lie within the grid.
+    /// Returns the voxel of a place, if it and its lateral shadow lie within the grid.
     fn inside(&self, p: DVec3) -> Option<[usize; 3]> {
         let v = self.voxel(p);
         let mut at = [0; 3];
@@ -234,14 +235,14 @@ impl ShadowGrid {
     }
 }
 
-/// Nothing yet.
+/// The empty range.
 const NONE: Range<usize> = Range { start: usize::MAX, end: 0 };
 
-/// Makes a column of so many zeros.
+/// Resets a column to `len` zeros.
 fn clear(column: &mut Vec<i32>, len: usize) {
     column.clear();
     if column.capacity() < len {
-        // Given back first: `resize` alone would copy what nobody needs.
+        // Freed first: `resize` alone would copy the old values.
         *column = Vec::new();
         column.reserve(2 * len);
     }
@@ -304,7 +305,7 @@ mod tests {
         let mut grid = ShadowGrid::new(0.3, 0.1, 1.8, 5);
         let joints: Vec<DVec3> =
             (0..200).map(|_| DVec3::new(s.normal(), s.range(0.0, 4.0), s.normal())).collect();
-        // In four years, of which each covers more, and every third joint is shed again.
+        // In four years, each of which covers more, and every third joint is shed again.
         for year in joints.chunks(50) {
             let (lo, hi) = year.iter().fold((year[0], year[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
             grid.cover(lo, hi, &mut []);

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::grove::{Grove, Kept, NONE, WAITS};
 
-/// Nobody's marker.
+/// Marks a marker without a bud.
 const FREE: u32 = u32::MAX;
 
-/// Markers and what the buds of the last look found. Palubicki et al. 2009, section 4.1.
+/// Markers, and the perception of the buds in the last round. Palubicki et al. 2009, section 4.1.
 #[derive(Clone, Debug)]
 pub(super) struct Space {
     markers: Vec<DVec3>,
@@ -18,20 +18,20 @@ pub(super) struct Space {
     occupancy: f64,
     perception: f64,
     cos_half: f64,
-    /// Nearest bud of each marker in this look: distance squared and the bud's row.
+    /// Nearest bud of each marker in this round: distance squared and the bud's row.
     best: Vec<(f64, u32)>,
-    /// Sum of directions of each bud: `1 + per_node` rows a joint, the terminal bud first.
+    /// Sum of directions of each bud: `1 + per_node` rows per joint, the terminal bud first.
     sum: Vec<DVec3>,
     stride: usize,
-    /// Where each axillary bud would grow.
+    /// Direction of growth of each axillary bud.
     bud_heading: Vec<DVec3>,
     near: Vec<usize>,
-    /// Markers that buds have looked at.
+    /// Number of markers that buds have examined.
     looks: u64,
 }
 
 impl Space {
-    /// `reach`: occupancy and perception radius, metres; `half_angle` of the cone, radians.
+    /// Indexes the markers. `reach`: occupancy and perception radius, metres; `half_angle` of the cone, radians.
     pub(super) fn new(markers: &[DVec3], reach: (f64, f64), half_angle: f64) -> Self {
         Self {
             grid: KdTree::new(markers),
@@ -49,12 +49,12 @@ impl Space {
         }
     }
 
-    /// Takes note of where the buds of the next joint would grow.
+    /// Stores the directions of growth of the buds of the next joint.
     pub(super) fn set_buds(&mut self, headings: impl Iterator<Item = DVec3>) {
         self.bud_heading.extend(headings);
     }
 
-    /// Markers within the occupancy radius of new joints are gone for ever.
+    /// Removes the markers within the occupancy radius of new joints permanently.
     pub(super) fn take_room(&mut self, joints: &[DVec3]) {
         let mut near = core::mem::take(&mut self.near);
         for &p in joints {
@@ -66,7 +66,7 @@ impl Space {
         self.near = near;
     }
 
-    /// Gives every free marker to the nearest bud in whose cone it lies.
+    /// Assigns every free marker to the nearest bud in whose cone it lies.
     ///
     /// # Errors
     /// [`OverBudget`].
@@ -120,20 +120,20 @@ impl Space {
         self.near = near;
     }
 
-    /// Q of the buds of a joint: 1 if any found room, 0 if none did.
+    /// Returns Q of the buds of a joint: 1 if any found room, 0 if none did.
     pub(super) fn light_at(&self, j: usize) -> f64 {
         let rows = &self.sum[j * self.stride..(j + 1) * self.stride];
         if rows.iter().any(|s| *s != DVec3::ZERO) { 1.0 } else { 0.0 }
     }
 
-    /// The way V of one bud.
+    /// Returns the direction V of one bud.
     pub(super) fn of_bud(&self, joint: usize, bud: Option<usize>) -> DVec3 {
         let per_node = self.stride - 1;
         let row = joint * self.stride + bud.map_or(0, |k| 1 + k - joint * per_node);
         self.sum[row].normalize_or_zero()
     }
 
-    /// Forgets the buds of shed joints and what they found.
+    /// Removes the buds of shed joints and their perception.
     pub(super) fn keep(&mut self, kept: &Kept) {
         kept.squeeze(&mut self.sum, self.stride);
         kept.squeeze(&mut self.bud_heading, self.stride - 1);

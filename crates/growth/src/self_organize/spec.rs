@@ -1,4 +1,4 @@
-//! What can be asked of self-organising growth.
+//! Settings of self-organising growth.
 
 use glam::DVec3;
 use plant::Phyllotaxis;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::within;
 use crate::{Arrangement, Envelope, GrowthError, Tropism};
 
-/// How buds learn how much light they have.
+/// Model of the light that buds receive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -19,10 +19,10 @@ pub enum Light {
         #[serde(default)]
         #[schemars(extend("x-unit" = "m"))]
         voxel_m: Option<f64>,
-        /// What a joint adds to its own voxel, above 0 and at most 100.
+        /// Contribution of a joint to its own voxel, above 0 and at most 100.
         #[schemars(range(min = 1e-6, max = 100.0))]
         a: f64,
-        /// The fall of the shadow from layer to layer, above 1 and at most 100.
+        /// Factor by which the shadow decreases from layer to layer, above 1 and at most 100.
         #[schemars(range(min = 1.0, max = 100.0))]
         b: f64,
         /// Layers below that are shaded, 1 to 32.
@@ -32,17 +32,33 @@ pub enum Light {
         #[schemars(range(min = 1e-6, max = 1e6))]
         full: f64,
     },
-    /// Space colonisation: Q = 1 for a bud that is nearest to a free marker in its cone, else 0.
+    /// Light from the sky: each internode bears a square leaf that lies level. Q is the light of an overcast sky on it,
+    /// over that in the open, times `full`; direction to where most of it comes from.
+    Sky {
+        /// Edge of the leaf, metres; default an internode. Buds are not shaded by their own leaf.
+        #[serde(default)]
+        #[schemars(extend("x-unit" = "m"))]
+        leaf_m: Option<f64>,
+        /// Lines of light in each of 46 directions, 1,000 to 262,144, default 32,768: more are more exact and slower.
+        #[serde(default = "usual_lines")]
+        #[schemars(range(min = 1000, max = 262_144))]
+        lines: u32,
+        /// Q in the open, above 0, default 1.
+        #[serde(default = "usual_full")]
+        #[schemars(range(min = 1e-6, max = 1e6))]
+        full: f64,
+    },
+    /// Space colonisation: Q = 1 for a bud that is nearest to a free marker in its cone, otherwise 0.
     Space {
-        /// Where markers are, relative to the root.
+        /// Space of the markers, relative to the root.
         envelope: Envelope,
-        /// How many for each tree, 1 to 10 million.
+        /// Markers for each tree, 1 to 10 million.
         #[schemars(range(min = 1, max = 10_000_000))]
         markers: u32,
         /// Radius in which a joint removes markers, internodes; 2 in the paper.
         #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "internodes"))]
         occupancy: f64,
-        /// Radius in which a bud sees markers, internodes; 4 to 6 in the paper.
+        /// Radius in which a bud perceives markers, internodes; 4 to 6 in the paper.
         #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "internodes"))]
         perception: f64,
         /// Half opening angle of the cone of sight, degrees; 45.
@@ -51,13 +67,21 @@ pub enum Light {
     },
 }
 
+const fn usual_lines() -> u32 {
+    32_768
+}
+
+const fn usual_full() -> f64 {
+    1.0
+}
+
 impl Default for Light {
     fn default() -> Self {
         Self::Shadow { voxel_m: None, a: 0.03, b: 1.8, layers: 6, full: 1.0 }
     }
 }
 
-/// How what was gathered is shared.
+/// Distribution of the gathered resource.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -102,9 +126,9 @@ pub struct SelfOrganizingSpec {
     /// Length of an internode at vigour 1, above 0, default 0.25.
     #[schemars(range(min = 0.0001, max = 1000.0), extend("x-unit" = "m"))]
     pub internode_m: f64,
-    /// How buds learn their light.
+    /// Model of the light of buds.
     pub light: Light,
-    /// How it is shared.
+    /// Distribution of the resource.
     pub resource: Resource,
     /// Years until `lambda_late` holds, default 10.
     #[schemars(extend("x-unit" = "a"))]
@@ -115,20 +139,20 @@ pub struct SelfOrganizingSpec {
     /// Weight xi of the best-lit direction, 0 to 10, default 0.25.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub light_weight: f64,
-    /// Weight eta and direction of what else pulls, default 0.05 upwards.
+    /// Weight eta and direction of other influences, default 0.05 upwards.
     pub tropisms: Vec<Tropism>,
-    /// How axillary buds stand, default a golden spiral.
+    /// Arrangement of the axillary buds, default a golden spiral.
     pub arrangement: Arrangement,
-    /// Between a shoot and the buds at its side, 0 to 180 degrees, default 60.
+    /// Angle between a shoot and its lateral buds, 0 to 180 degrees, default 60.
     #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
     pub branch_angle_deg: f64,
     /// Standard deviation of that angle and of the azimuths, 0 to 60 degrees, default 4.
     #[schemars(range(min = 0.0, max = 60.0), extend("x-unit" = "deg"))]
     pub jitter_deg: f64,
-    /// A branch with less light per internode is shed, 0 or more, default 0.15.
+    /// Light per internode below which a branch is shed, 0 or more, default 0.15.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub shed_below: f64,
-    /// Years that a branch is spared, default 3.
+    /// Years for which a branch is spared, default 3.
     #[schemars(extend("x-unit" = "a"))]
     pub shed_after_years: u32,
     /// Most internodes of one shoot a year, 1 to 100, default 6.
@@ -140,9 +164,9 @@ pub struct SelfOrganizingSpec {
     /// Radius of a fresh shoot, above 0, default 0.004.
     #[schemars(range(min = 1e-6, max = 10.0), extend("x-unit" = "m"))]
     pub tip_radius_m: f64,
-    /// Whether a bud suffers from the shadow of its own leaf (Yang et al. 2019 have no correction), default false.
+    /// Whether a bud is shaded by its own leaf (Yang et al. 2019 have no correction), default false.
     pub self_shadow: bool,
-    /// Most joints of all trees together; growth stops, with a warning, before the year that would make more. Default
+    /// Most joints of all trees together; growth stops, with a warning, before the year that would exceed it. Default
     /// 200,000: some six million triangles.
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
@@ -175,7 +199,7 @@ impl Default for SelfOrganizingSpec {
     }
 }
 
-/// What follows from checked numbers.
+/// Values derived from checked numbers.
 pub(super) struct Numbers {
     pub(super) phyllotaxis: Phyllotaxis,
     pub(super) pull: DVec3,
@@ -186,6 +210,10 @@ impl SelfOrganizingSpec {
         spec::check(self)?;
         if let Light::Shadow { voxel_m: Some(v), .. } = self.light {
             within("light.voxel_m", v, 0.1 * self.internode_m, 1e3, "a tenth of an internode to 1000 m")?;
+        }
+        if let Light::Sky { leaf_m: Some(v), .. } = self.light {
+            let most = "a hundredth of an internode to 10 internodes";
+            within("light.leaf_m", v, 0.01 * self.internode_m, 10.0 * self.internode_m, most)?;
         }
         Ok(Numbers { phyllotaxis: self.arrangement.phyllotaxis()?, pull: Tropism::sum(&self.tropisms)? })
     }

@@ -27,7 +27,7 @@ fn vigour_is_shared_without_loss() {
         let mut flow = Flow::default();
         flow.gather(&grove, &light);
         assert!((flow.light[0] - 2.2).abs() < 1e-12 && flow.size[0] == 4.0, "{flow:?}");
-        // A hundredth of it all is enough for every bud.
+        // A hundredth of the total is enough for every bud.
         flow.share(&grove, &light, 200.0, sharing);
         let all: f64 = flow.fed.iter().map(|f| f.vigour).sum();
         assert!((all - 440.0).abs() < 1e-9, "{sharing:?}: {all}");
@@ -131,7 +131,7 @@ fn space_and_priority_models_grow_trees_too() {
             light,
             resource,
             years: 20,
-            // Lit or dark: one lit tip on a branch of ten internodes is light enough.
+            // Lit or dark: one lit tip on a branch of ten internodes is enough light.
             shed_below: 0.03,
             ..SelfOrganizingSpec::default()
         };
@@ -192,7 +192,7 @@ fn weak_shade_does_not_run_away() {
     {
         assert!(told.contains(word), "{word}: {told}");
     }
-    // A whole tree: as if no more years had been asked for. What is shed in the last year is not put back.
+    // A whole tree: as if no more years had been requested. Joints shed in the last year are not restored.
     let last = tree.skeleton.age();
     let (before, report) = grow(weak, last, 2.0);
     assert!(report.warnings.is_empty() && last < 40, "{last}");
@@ -228,7 +228,7 @@ fn a_bole_carries_the_buds_to_markers_that_begin_high_up() {
 fn a_budget_refuses_and_never_makes_another_tree() {
     let spec = SelfOrganizingSpec { years: 18, ..SelfOrganizingSpec::default() };
     let with = |times: f64, spec: &SelfOrganizingSpec| {
-        let run = Run { budget: Budget { times, ..Budget::default() }, ..Run::plain() };
+        let run = Run { budget: base::Budget { times, ..base::Budget::default() }, ..Run::plain() };
         let none = Obstacles::none();
         self_organize(&[DVec3::ZERO], &none, spec, Seed::new(1), &run, &mut Report::default())
     };
@@ -246,4 +246,69 @@ fn a_budget_refuses_and_never_makes_another_tree() {
         panic!("1000 years pass a thousandth")
     };
     assert_eq!(over.what, Counted::JointYears);
+}
+
+fn by_sky(full: f64) -> SelfOrganizingSpec {
+    let light = Light::Sky { leaf_m: None, lines: 16_384, full };
+    SelfOrganizingSpec { light, years: 12, ..SelfOrganizingSpec::default() }
+}
+
+#[test]
+fn a_leaf_in_the_open_gets_all_light_and_one_below_another_less() {
+    let mut sky = Sky::new(0.2, 60_000, 1.0).expect("a sky");
+    // One in the open, and one close below another of the same size.
+    let joints = [DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, 0.8, 0.0)];
+    sky.look(&joints, Seed::new(1), &Run::plain()).expect("light");
+    let light: Vec<f64> = sky.lights().collect();
+    assert!((light[0] - 1.0).abs() < 0.02 && (light[1] - 1.0).abs() < 0.02, "{light:?}");
+    // Two squares at the distance of their edge: the sky that the upper one hides is the view factor of opposite sides of
+    // a cube, 0.1998, by the mean light of the overcast sky there.
+    let hidden = 1.0 - light[2];
+    assert!(hidden > 0.1998 && hidden < 0.1998 * 9.0 / 7.0, "{light:?}");
+    assert!(sky.towards(0).y > 0.99, "{}", sky.towards(0));
+}
+
+#[test]
+fn a_bud_beside_a_roof_turns_to_the_open_side() {
+    let mut sky = Sky::new(0.1, 60_000, 1.0).expect("a sky");
+    let mut joints = vec![DVec3::ZERO];
+    for x in 0..30 {
+        for z in -15..15 {
+            joints.push(DVec3::new(0.1 * f64::from(x), 0.5, 0.1 * f64::from(z)));
+        }
+    }
+    sky.look(&joints, Seed::new(1), &Run::plain()).expect("light");
+    assert!(sky.towards(0).x < -0.3, "{}", sky.towards(0));
+}
+
+#[test]
+fn trees_in_the_light_of_the_sky_are_repeatable_and_shade_one_another() {
+    let spec = by_sky(1.0);
+    let alone = grow(&spec, &[DVec3::ZERO]);
+    assert_eq!(alone, grow(&spec, &[DVec3::ZERO]));
+    assert!(alone.skeleton.len() > 100, "{}", alone.skeleton.len());
+    let near: Vec<DVec3> =
+        (0..9).map(|k| DVec3::new(f64::from(k % 3), 0.0, f64::from(k / 3)) * 0.8).collect();
+    let crowded = grow(&spec, &near);
+    let each = crowded.skeleton.len() / near.len();
+    assert!(each < alone.skeleton.len(), "{each}, alone {}", alone.skeleton.len());
+    // The last years leave the first as they were.
+    let fewer = grow(&SelfOrganizingSpec { years: 8, ..spec }, &[DVec3::ZERO]);
+    assert!(fewer.skeleton.len() < alone.skeleton.len());
+    assert_eq!(fewer.skeleton.position[..4], alone.skeleton.position[..4]);
+}
+
+#[test]
+fn too_dim_a_sky_is_an_error_that_says_so() {
+    let none = Obstacles::none();
+    let spec = by_sky(0.1);
+    let found =
+        self_organize(&[DVec3::ZERO], &none, &spec, Seed::new(1), &Run::plain(), &mut Report::default());
+    let why = found.expect_err("nothing grows").to_string();
+    assert!(why.contains("light.full"), "{why}");
+    let light = Light::Sky { leaf_m: Some(1e9), lines: 16_384, full: 1.0 };
+    let wide = SelfOrganizingSpec { light, ..spec };
+    let found =
+        self_organize(&[DVec3::ZERO], &none, &wide, Seed::new(1), &Run::plain(), &mut Report::default());
+    assert!(found.expect_err("a range").to_string().contains("light.leaf_m"));
 }

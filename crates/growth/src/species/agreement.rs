@@ -1,36 +1,36 @@
-//! Traits of two lots of trees -> whether they may be of one distribution.
+//! Tests whether the traits of two samples of trees may come from one distribution.
 
 use base::ops;
 
 use super::Traits;
 use super::traits::Trait;
 
-/// One trait of one order in two lots of trees.
+/// One trait of one order in two samples of trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Agreement {
-    /// 0 for trunks.
+    /// The order, 0 for trunks.
     pub order: usize,
-    /// Which trait.
+    /// The trait.
     pub which: Trait,
-    /// Values of each lot.
+    /// Number of values in each sample.
     pub counts: [usize; 2],
     /// Their medians.
     pub medians: [f64; 2],
     /// The greatest distance between the two distributions, 0 to 1.
     pub distance: f64,
-    /// How often chance gives as much, if all values were drawn independently from one distribution.
+    /// Probability of at least this distance, if all values were drawn independently from one distribution.
     pub p: f64,
 }
 
-/// Compares two lots by the test of Kolmogorov and Smirnov for two samples, trait by trait up to an order.
+/// Compares two samples by the test of Kolmogorov and Smirnov, trait by trait up to an order.
 ///
-/// Not guaranteed: that p holds where the axes of a tree are like one another, as they are; it is then too small.
+/// Not guaranteed: that p is valid if the axes of a tree resemble one another, as they do; it is then too small.
 pub fn agree(first: &Traits, second: &Traits, orders: usize) -> Vec<Agreement> {
     let mut out = Vec::new();
     for (order, (a, b)) in first.orders.iter().zip(&second.orders).enumerate().take(orders) {
         for which in Trait::ALL.into_iter().filter(|t| t.is_of(order)) {
             let [x, y] = [a, b].map(|t| {
-                let mut values = t.of(which).to_vec();
+                let mut values = t.values(which).to_vec();
                 base::sort_numbers(&mut values);
                 values
             });
@@ -52,10 +52,11 @@ pub fn agree(first: &Traits, second: &Traits, orders: usize) -> Vec<Agreement> {
     out
 }
 
-/// Values that differ by so little of their mean count as one: rules have five digits, and an axis goes on a little beyond a fork.
+/// Difference relative to the mean below which values count as equal: rules have five digits, and an axis continues
+/// slightly beyond a fork.
 const ONE_VALUE: f64 = 2e-3;
 
-/// The greatest distance between the distributions of sorted values.
+/// Returns the greatest distance between the distributions of sorted values.
 fn distance(x: &[f64], y: &[f64]) -> f64 {
     let (mut i, mut j, mut most) = (0, 0, 0.0_f64);
     let near = ONE_VALUE * (x.iter().sum::<f64>() / x.len() as f64).abs();
@@ -69,7 +70,7 @@ fn distance(x: &[f64], y: &[f64]) -> f64 {
     most
 }
 
-/// The tail of Kolmogorov's distribution, with the correction for few values (Stephens 1970).
+/// Returns the tail of Kolmogorov's distribution, with the correction for few values (Stephens 1970).
 fn tail(distance: f64, n: f64) -> f64 {
     let root = n.sqrt();
     let t = distance * (root + 0.12 + 0.11 / root);

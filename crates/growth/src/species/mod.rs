@@ -1,6 +1,7 @@
-//! Measured trees -> a species whose trees branch as they do.
+//! Fits a species to measured trees whose trees branch as they do.
 //!
-//! `plants -> Traits by order -> quantiles -> rules -> TreeSpec`, and back: trees of the spec -> Traits -> how well they agree.
+//! `plants -> Traits by order -> quantiles -> rules -> TreeSpec`, and back: trees of the spec -> Traits -> their
+//! agreement.
 
 mod agreement;
 mod rules;
@@ -10,7 +11,7 @@ pub use agreement::{Agreement, agree};
 pub use rules::{FittedSpecies, SpeciesError, SpeciesLimits, Unfitted, fit_species};
 pub use traits::{OrderTraits, Trait, Traits};
 
-/// The value below which a share of sorted values lies, between neighbours in proportion. NaN of none.
+/// Returns a quantile of sorted values, interpolated linearly. NaN if there are none.
 pub(crate) fn quantile_of(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let at = share.clamp(0.0, 1.0) * last as f64;

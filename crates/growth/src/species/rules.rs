@@ -1,4 +1,4 @@
-//! Traits by order -> rules that draw each of them from what was measured.
+//! Turns traits by order into rules that draw each of them from the measurements.
 
 use core::fmt::Write as _;
 
@@ -6,14 +6,14 @@ use super::quantile_of;
 use super::traits::{OrderTraits, Trait, Traits};
 use crate::{Method, TreeSpec, VariationSpec, WoodSpec};
 
-/// What bounds a fitted species.
+/// Limits of a fitted species.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpeciesLimits {
     /// Orders from the trunk on, 1 to 6: each needs letters of its own.
     pub orders: usize,
-    /// Axes of an order, at least: fewer tell no distribution.
+    /// Least number of axes of an order: fewer do not determine a distribution.
     pub fewest_axes: usize,
-    /// Trunks, at least: fewer than 2 tell nothing of how trees differ.
+    /// Least number of trunks: fewer than 2 do not show how trees differ.
     pub fewest_trees: usize,
 }
 
@@ -23,93 +23,94 @@ impl Default for SpeciesLimits {
     }
 }
 
-/// What could not be fitted, and what was done about it.
+/// A part that could not be fitted, and its replacement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Unfitted {
-    /// Orders from this one on have too few axes, and the trees of the spec have none of them.
+    /// Orders from this one on have too few axes, and are missing in the trees of the spec.
     Orders {
-        /// The first that is left out.
+        /// The first omitted order.
         from: usize,
-        /// Its axes.
+        /// Number of its axes.
         axes: usize,
     },
     /// All trees of the spec have the same trunk.
     Trunks {
-        /// How many were measured.
+        /// Number of measured trees.
         trees: usize,
     },
-    /// Axes bear more than rules can make: those beyond are left out.
+    /// Axes bear more than rules can make: the rest is left out.
     Borne {
         /// The most that one axis bears.
         most: usize,
     },
 }
 
-/// A species made of measured trees.
+/// A species fitted to measured trees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedSpecies {
     /// The spec, whose method is an L-system.
     pub spec: TreeSpec,
-    /// Orders that its trees have.
+    /// Number of orders of its trees.
     pub orders: usize,
-    /// What they have not.
+    /// The parts that are missing.
     pub unfitted: Vec<Unfitted>,
 }
 
-/// Trees of which no species can be made.
+/// Reason why trees cannot be made into a species.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpeciesError {
     /// There is no trunk.
     #[error("no tree has a trunk; give trees with axes")]
     NoTree,
-    /// Trunks bear too little.
+    /// Trunks bear too few branches.
     #[error(
         "the trees have {axes} branches of the first order together; a species needs {fewest}: give more trees"
     )]
     FewBranches {
-        /// How many there are.
+        /// Actual number of branches.
         axes: usize,
-        /// How many are needed.
+        /// Number of branches needed.
         fewest: usize,
     },
-    /// Radii are not known.
+    /// The radii are unknown.
     #[error("the trees have no radii; give files that hold them")]
     NoRadii,
 }
 
-/// Quantiles that a rule draws from; as many as [`crate::Lsystem`] takes.
+/// Most quantiles of a draw in a rule; as many as [`crate::Lsystem`] accepts.
 const QUANTILES: usize = 64;
-/// Rules move on by at most this share of an axis's length at once, so that it tapers between axes that it bears; two and the collar reach
-/// the middle, where taper is measured.
+/// Largest step of rules, as a share of an axis's length, so that the axis tapers between those that it bears; two
+/// steps and the collar reach the middle, where taper is measured.
 const STRIDE: f64 = 0.245;
-/// Farther than any axis is long, metres: where the next axis is when none comes.
+/// Distance, metres, longer than any axis, to the next axis if none follows.
 const NEVER: f64 = 1e4;
-/// Rewriting steps at most: as many as [`crate::Lsystem`] takes.
+/// Most rewriting steps: as many as [`crate::Lsystem`] accepts.
 const STEPS: usize = 1000;
-/// An axis has the radius of a fork for such a share of its length beyond it: what is thickest and straightest there goes on as the
-/// axis, however thin it soon becomes.
+/// Length beyond a fork, as a share of the axis, on which it keeps the radius of the fork: the thickest and straightest
+/// branch there continues the axis, however thin it soon becomes.
 const BEYOND: f64 = 2e-5;
-/// Radius of what ends, as a share of a trunk's: thinner than any axis that is measured.
+/// Radius of a tip, as a share of a trunk's: thinner than any measured axis.
 const TIP: f64 = 1e-3;
-/// Least and greatest taper: beyond, a radius half way along is a slip of its file.
+/// Least and greatest taper: beyond them, a radius half way along is a mistake in its file.
 const TAPERS: [f64; 2] = [0.02, 2.0];
 /// Share of an axis's length up to which it has the radius of its base.
 const COLLAR: f64 = 0.01;
-/// A branch that is longer than so many times its bearer is drawn as long as that: spurs of a few centimetres bear long shoots, but of a
-/// slip of a file trees would never end.
+/// Largest length of a branch relative to its bearer; longer ones are cut to it: spurs of a few centimetres bear long
+/// shoots, but a mistake in a file would make endless trees.
 const MOST_LENGTH_RATIO: f64 = 30.0;
-/// A branch that is thicker than its bearer is drawn as thick.
+/// Largest radius of a branch relative to its bearer; thicker ones are reduced to it.
 const MOST_RADIUS_RATIO: f64 = 1.0;
-/// Steps of the shares at which waits are told.
+/// Number of shares at which waits are evaluated.
 const FINE: usize = 2000;
-/// Letters of the rules of each order: an axis that begins, and one on its way.
+/// Letters of the rules of each order: an axis that begins, and one that continues.
 const LETTERS: [(char, char); 6] = [('A', 'a'), ('B', 'b'), ('C', 'c'), ('D', 'd'), ('E', 'e'), ('G', 'g')];
 
-/// Makes a species of what was measured: every trait of every order is drawn from its own quantiles, independently of all others.
+/// Makes a species from measurements: every trait of every order is drawn from its own quantiles, independently of all
+/// others.
 ///
-/// Distances from branch to branch are corrected for axes that end before the next one (Kaplan and Meier 1958), as the trees of the spec
-/// have such ends as well. Azimuths are drawn evenly, and axes are straight: neither is measured.
+/// Distances from branch to branch are corrected for axes that end before the next one (Kaplan and Meier 1958), as the
+/// trees of the spec have such ends as well. Azimuths are drawn uniformly, and axes are straight: neither is measured.
 ///
 /// # Errors
 /// [`SpeciesError`].
@@ -119,12 +120,12 @@ pub fn fit_species(
     limits: &SpeciesLimits,
 ) -> Result<FittedSpecies, SpeciesError> {
     let trunks = traits.orders.first().filter(|o| o.axes > 0).ok_or(SpeciesError::NoTree)?;
-    if trunks.of(Trait::Slenderness).iter().all(|s| *s <= 0.0) {
+    if trunks.values(Trait::Slenderness).iter().all(|s| *s <= 0.0) {
         return Err(SpeciesError::NoRadii);
     }
     let mut unfitted = Vec::new();
     let most = limits.orders.clamp(1, LETTERS.len());
-    let is_known = |o: &OrderTraits| o.axes >= limits.fewest_axes && !o.of(Trait::Angle).is_empty();
+    let is_known = |o: &OrderTraits| o.axes >= limits.fewest_axes && !o.values(Trait::Angle).is_empty();
     let known = 1 + traits.orders[1..].iter().take_while(|o| is_known(o)).count();
     let orders = known.min(most);
     if let Some(next) = traits.orders.get(orders) {
@@ -139,7 +140,7 @@ pub fn fit_species(
         unfitted.push(Unfitted::Trunks { trees: trunks.axes });
     }
     let fitted = &traits.orders[..orders];
-    // An axis moves on by one that it bears, or by a stride, in a step.
+    // An axis advances by one borne axis, or by a stride, in a step.
     let strides = (1.0 / STRIDE).ceil();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few strides")]
     let steps: usize = fitted.iter().map(|o| 2 * o.most_borne + strides as usize + 2).sum();
@@ -161,8 +162,8 @@ pub fn fit_species(
 fn rules(orders: &[OrderTraits], steps: usize) -> String {
     let mut out = String::new();
     let trunks = &orders[0];
-    let drawn = |order: &OrderTraits, which| drawn_of(&sorted(order.of(which)));
-    let median = |which| quantile_of(&sorted(trunks.of(which)), 0.5);
+    let drawn = |order: &OrderTraits, which| drawn_of(&sorted(order.values(which)));
+    let median = |which| quantile_of(&sorted(trunks.values(which)), 0.5);
     let trunk_radius = median(Trait::Length) * median(Trait::Slenderness);
     let _ = write!(
         out,
@@ -185,16 +186,16 @@ fn rules(orders: &[OrderTraits], steps: usize) -> String {
     out
 }
 
-/// How an axis of an order goes on from each axis that it bears to the next.
+/// Writes the rules by which an axis of an order continues from each axis that it bears to the next.
 fn order_rules(
     order: &OrderTraits,
     (begin, on): (char, char),
     following: Option<(&OrderTraits, char)>,
 ) -> String {
-    let taper = drawn_of(&tapers(order.of(Trait::Taper)));
-    // What an order bears that is left out is borne by none.
+    let taper = drawn_of(&tapers(order.values(Trait::Taper)));
+    // Axes of an omitted order are not borne.
     let [first, next] = [(Trait::First, 0), (Trait::Internode, 1)].map(|(which, k)| match following {
-        Some(_) => drawn_of(&waits(order.of(which), &order.unended[k])),
+        Some(_) => drawn_of(&waits(order.values(which), &order.unended[k])),
         None => short(NEVER),
     });
     let stride = format!("l * {STRIDE}");
@@ -214,9 +215,9 @@ fn order_rules(
         "{on}(l, r, t, x, d) if d <= {stride} && x + d < l -> !(2 * {there}) F(d) [ /(rand(0, 360)) &({angle}) \
          {next_begin}(l * {length}, max(tip, {there} * {radius})) ] !(2 * {there}) F(l * {BEYOND}) \
          {on}(l, r, t, x + d + l * {BEYOND}, max(0, {next} - l * {BEYOND}))",
-        angle = drawn_of(&sorted(following.of(Trait::Angle))),
-        length = drawn_of(&shares(following.of(Trait::LengthRatio), MOST_LENGTH_RATIO)),
-        radius = drawn_of(&shares(following.of(Trait::RadiusRatio), MOST_RADIUS_RATIO)),
+        angle = drawn_of(&sorted(following.values(Trait::Angle))),
+        length = drawn_of(&shares(following.values(Trait::LengthRatio), MOST_LENGTH_RATIO)),
+        radius = drawn_of(&shares(following.values(Trait::RadiusRatio), MOST_RADIUS_RATIO)),
     );
     out
 }
@@ -231,17 +232,18 @@ fn shares(values: &[f64], most: f64) -> Vec<f64> {
     sorted(values).into_iter().filter(|v| *v > 0.0).map(|v| v.min(most)).collect()
 }
 
-/// Tapers as rules can draw them, sorted: an axis that has the share t of its radius half way along has t^(2x/l) at x, and ends in a cone.
+/// Returns sorted tapers that rules can draw: an axis with the share t of its radius half way along has t^(2x/l) at x,
+/// and ends in a cone.
 fn tapers(values: &[f64]) -> Vec<f64> {
     sorted(values).into_iter().map(|t| t.clamp(TAPERS[0], TAPERS[1])).collect()
 }
 
-/// Waits for the next axis, sorted, as they would be if no axis ended before it (Kaplan and Meier 1958): as many values as keep the
-/// shares, [`NEVER`] for what never ended.
+/// Returns the sorted distances to the next axis as they would be if no axis ended before it (Kaplan and Meier 1958):
+/// as many values as keep the shares, [`NEVER`] for those that never ended.
 fn waits(ended: &[f64], unended: &[f64]) -> Vec<f64> {
     let mut all: Vec<(f64, bool)> =
         ended.iter().map(|w| (*w, true)).chain(unended.iter().map(|w| (*w, false))).collect();
-    // What ended comes before what was seen as long.
+    // Ended ones come before unended ones of the same length.
     base::sort_by(&mut all, |a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let mut left = 1.0;
     let mut steps: Vec<(f64, f64)> = Vec::new();
@@ -260,14 +262,14 @@ fn waits(ended: &[f64], unended: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// A draw from sorted values, in the language of rules.
+/// Writes a draw from sorted values, in the language of rules.
 fn drawn_of(sorted: &[f64]) -> String {
     let numbers: Vec<String> =
         (0..QUANTILES).map(|k| short(quantile_of(sorted, k as f64 / (QUANTILES - 1) as f64))).collect();
     format!("drawn({})", numbers.join(", "))
 }
 
-/// Five digits, however small it is.
+/// Writes five digits, however small the value is.
 fn short(value: f64) -> String {
     if !value.is_finite() {
         return "0".to_owned();
@@ -292,7 +294,7 @@ mod tests {
 
     #[test]
     fn waits_are_those_of_axes_that_did_not_end_before() {
-        // Of four axes two end before the second branch would come: half of what is left then waits for ever.
+        // Two of four axes end before the second branch would come: half of the rest then waits for ever.
         let got = waits(&[1.0, 2.0], &[1.5, 3.0]);
         let at = |share: f64| quantile_of(&got, share);
         assert!((at(0.1) - 1.0).abs() < 1e-9 && (at(0.5) - 2.0).abs() < 1e-9, "{got:?}");
@@ -308,7 +310,7 @@ mod tests {
         }
     }
 
-    /// Trees grown of a species, measured and fitted again, give the same species.
+    /// Trees grown from a species, measured and fitted again, give the same species.
     #[test]
     fn a_species_of_its_own_trees_is_itself() {
         let rules = "axiom = A(6, 0.1)\nsteps = 40\nwidth = 0.2\n\

@@ -1,17 +1,17 @@
-//! A plant -> how its axes branch, order by order.
+//! Measures how the axes of a plant branch, order by order.
 
 use base::ops;
 use glam::DVec3;
 use plant::{Axis, NodeId, Plant};
 
-/// What is measured of every axis of an order.
+/// Measure of every axis of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Trait {
-    /// Of a trunk: its length, metres.
+    /// Length of a trunk, metres.
     Length,
-    /// Of a trunk: its radius at the base as a share of its length.
+    /// Radius of a trunk at the base as a share of its length.
     Slenderness,
-    /// Between the axis and its bearer where it leaves it, degrees.
+    /// Angle between the axis and its bearer at its start, degrees.
     Angle,
     /// Its length as a share of its bearer's.
     LengthRatio,
@@ -19,14 +19,14 @@ pub enum Trait {
     RadiusRatio,
     /// Its radius half way along as a share of that at its base.
     Taper,
-    /// From its base to the first axis that it bears, metres.
+    /// Distance from its base to the first axis that it bears, metres.
     First,
-    /// From each axis that it bears to the next, metres.
+    /// Distance from each axis that it bears to the next, metres.
     Internode,
 }
 
 impl Trait {
-    /// All.
+    /// All traits.
     pub const ALL: [Self; 8] = [
         Self::Length,
         Self::Slenderness,
@@ -38,7 +38,7 @@ impl Trait {
         Self::Internode,
     ];
 
-    /// The word of reports and pictures.
+    /// Returns the word in reports and pictures.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Length => "length",
@@ -52,7 +52,7 @@ impl Trait {
         }
     }
 
-    /// Its unit; empty for a share.
+    /// Returns its unit; empty for a share.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Length | Self::First | Self::Internode => "m",
@@ -74,19 +74,18 @@ impl Trait {
 /// All values of one order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrderTraits {
-    /// Axes.
+    /// Number of axes.
     pub axes: usize,
-    /// The most axes that one of them bears.
+    /// Most axes that one of them bears.
     pub most_borne: usize,
-    /// What was seen of [`Trait::First`] and of [`Trait::Internode`] where an axis ended before the next one: at least so far,
-    /// metres.
+    /// Lower bounds of [`Trait::First`] and of [`Trait::Internode`] for axes that ended before the next one, metres.
     pub unended: [Vec<f64>; 2],
     values: [Vec<f64>; Trait::ALL.len()],
 }
 
 impl OrderTraits {
-    /// Values of a trait, of all plants in turn.
-    pub fn of(&self, which: Trait) -> &[f64] {
+    /// Returns the values of a trait, of all plants in turn.
+    pub fn values(&self, which: Trait) -> &[f64] {
         &self.values[which as usize]
     }
 
@@ -97,20 +96,21 @@ impl OrderTraits {
     }
 }
 
-/// How the axes of plants branch, order by order: trunks first.
+/// Branching of the axes of plants, order by order: trunks first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Traits {
     /// Order 0, 1, and so on.
     pub orders: Vec<OrderTraits>,
 }
 
-/// Directions are those over this share of an axis's length: one internode of a scan is mostly noise.
+/// Share of an axis's length over which directions are measured: one internode of a scan is mostly noise.
 const CHORD: f64 = 0.1;
 
 impl Traits {
-    /// Measures a plant and adds what it has. Roots, leaf stalks and stubs are no axes here, nor is what has no length.
+    /// Measures a plant and adds its values. Roots, leaf stalks and stubs do not count as axes here, nor do axes
+    /// without length.
     ///
-    /// Cost: linear, and a sort of what each axis bears.
+    /// Cost: linear, and a sort of the axes that each axis bears.
     pub fn add(&mut self, plant: &Plant) {
         let shoot = plant.shoot();
         let lines: Vec<Line> = plant.axes.iter().map(|axis| Line::new(plant, axis)).collect();
@@ -161,15 +161,15 @@ impl Traits {
         }
     }
 
-    /// Those of some plants.
-    pub fn of<'a>(plants: impl IntoIterator<Item = &'a Plant>) -> Self {
+    /// Measures several plants.
+    pub fn measure<'a>(plants: impl IntoIterator<Item = &'a Plant>) -> Self {
         let mut out = Self::default();
         plants.into_iter().for_each(|plant| out.add(plant));
         out
     }
 }
 
-/// The course of an axis with the way to each of its nodes.
+/// The course of an axis with the length from its base to each of its nodes.
 struct Line {
     points: Vec<DVec3>,
     radii: Vec<f64>,
@@ -193,7 +193,7 @@ impl Line {
         self.way.last().copied().unwrap_or(0.0)
     }
 
-    /// That beyond the collar: the node on the bearer's line has no surface of its own.
+    /// Returns the radius beyond the collar: the node on the bearer's line has no surface of its own.
     fn base_radius(&self) -> f64 {
         self.radii.get(1).or(self.radii.first()).copied().unwrap_or(0.0)
     }
@@ -214,14 +214,14 @@ impl Line {
         of(before, next, share)
     }
 
-    /// Towards a place from below; at the base from there on.
+    /// Returns the direction towards a place from below; at the base the direction from there on.
     fn direction_below(&self, at: f64) -> Option<DVec3> {
         let chord = CHORD * self.length();
         let low = (at - chord).max(0.0);
         (self.point_at(at.max(low + chord)) - self.point_at(low)).try_normalize()
     }
 
-    /// From the base on.
+    /// Returns the direction at the base.
     fn direction_above(&self) -> Option<DVec3> {
         (self.point_at(CHORD * self.length()) - self.points.first().copied()?).try_normalize()
     }
@@ -248,7 +248,7 @@ mod tests {
                 p.nodes.radius_m[row as usize] = radius * (1.0 - 0.1 * k as f64);
             }
         }
-        let t = Traits::of([&p]);
+        let t = Traits::measure([&p]);
         assert_eq!(
             (t.orders.len(), t.orders[0].axes, t.orders[1].axes, t.orders[0].most_borne),
             (2, 1, 2, 2)
@@ -259,15 +259,15 @@ mod tests {
                 "{got:?} {want:?}"
             );
         };
-        near(t.orders[0].of(Trait::Length), &[4.0]);
-        near(t.orders[0].of(Trait::Slenderness), &[0.18 / 4.0]);
-        near(t.orders[1].of(Trait::Angle), &[60.0, 60.0]);
-        near(t.orders[1].of(Trait::LengthRatio), &[0.25, 0.5]);
-        near(t.orders[1].of(Trait::RadiusRatio), &[0.09 / 0.18, 0.045 / 0.16]);
-        near(t.orders[0].of(Trait::First), &[2.0]);
-        near(t.orders[0].of(Trait::Internode), &[1.0]);
+        near(t.orders[0].values(Trait::Length), &[4.0]);
+        near(t.orders[0].values(Trait::Slenderness), &[0.18 / 4.0]);
+        near(t.orders[1].values(Trait::Angle), &[60.0, 60.0]);
+        near(t.orders[1].values(Trait::LengthRatio), &[0.25, 0.5]);
+        near(t.orders[1].values(Trait::RadiusRatio), &[0.09 / 0.18, 0.045 / 0.16]);
+        near(t.orders[0].values(Trait::First), &[2.0]);
+        near(t.orders[0].values(Trait::Internode), &[1.0]);
         near(&t.orders[0].unended[1], &[1.0]);
         near(&t.orders[1].unended[0], &[1.0, 2.0]);
-        assert!(t.orders[1].of(Trait::First).is_empty() && t.orders[0].of(Trait::Angle).is_empty());
+        assert!(t.orders[1].values(Trait::First).is_empty() && t.orders[0].values(Trait::Angle).is_empty());
     }
 }

@@ -1,5 +1,5 @@
-//! What holds for any envelope, any obstacles and every method: growth ends, every attractor is consumed or reported,
-//! nothing grows beyond the envelope or into an obstacle, and what comes out is sound.
+//! Properties of any envelope, any obstacles and every method: growth ends, every attractor is consumed or reported,
+//! nothing grows beyond the envelope or into an obstacle, and the result is sound.
 
 #![expect(clippy::expect_used, reason = "a test")]
 
@@ -11,7 +11,7 @@ use growth::{
 };
 use proptest::prelude::*;
 
-/// Envelopes that are round about the vertical through the origin.
+/// Envelopes that are rotationally symmetric about the vertical through the origin.
 fn envelope() -> impl Strategy<Value = Envelope> {
     let size = || 0.3..4.0_f64;
     let low = || (0.0..2.0_f64).prop_map(|y| DVec3::new(0.0, y, 0.0));
@@ -44,7 +44,7 @@ fn envelope() -> impl Strategy<Value = Envelope> {
     ]
 }
 
-/// How far the convex hull of an envelope reaches in a direction.
+/// Returns how far the convex hull of an envelope reaches in a direction.
 fn support(envelope: &Envelope, u: DVec3) -> f64 {
     let flat = DVec2::new(u.x, u.z).length();
     match envelope {
@@ -62,7 +62,7 @@ fn support(envelope: &Envelope, u: DVec3) -> f64 {
     }
 }
 
-/// Directions all around, about as far from each other.
+/// Returns directions all around, about equally far from each other.
 fn directions() -> Vec<DVec3> {
     let n = 300;
     (0..n)
@@ -159,7 +159,7 @@ proptest! {
         seed: u64,
     ) {
         let kill_m = kill * attraction_m;
-        // Below the envelope: what lies between belongs to the tree's space.
+        // Below the envelope: the gap belongs to the tree's space.
         let root = DVec3::ZERO;
         let (run, none, mut told) = (Run::plain(), Obstacles::none(), Report::default());
         let crown = envelope.prepare().expect("sound");
@@ -204,7 +204,7 @@ proptest! {
         age in prop::option::of(0..30_u32),
         seed: u64,
     ) {
-        // An L-system is at its end what it is at its sixth step, but larger.
+        // At its end an L-system is the same as at its sixth step, but larger.
         let rules = matches!(method, Method::Lsystem { .. });
         let age = if rules { Some(age.map_or(6, |a| a.min(6))) } else { age };
         let spec = TreeSpec {
@@ -218,7 +218,8 @@ proptest! {
         let mut report = Report::default();
         let grown = match grow(&spec, None, Seed::new(seed), &Run::plain(), &mut report) {
             Ok(grown) => grown,
-            // A root in an obstacle, an envelope that obstacles fill, a plane's normal without a length, an age beyond life.
+            // A root in an obstacle, an envelope that obstacles fill, a plane's normal without a length, an age beyond
+            // life.
             Err(
                 GrowthError::RootInObstacle { .. }
                 | GrowthError::NoRoom { .. }

@@ -3,7 +3,7 @@
 use geom::HeightField;
 use glam::DVec3;
 
-/// Margins and midrib by stations from base to tip, in the blade's plane.
+/// Margins and midrib at stations from base to tip, in the blade's plane.
 pub(super) struct Lines {
     y: Vec<f64>,
     left: Vec<f64>,
@@ -12,7 +12,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    pub(super) fn of(flat: &[DVec3], field: &HeightField, rows: usize, spacing: f64) -> Self {
+    pub(super) fn from_points(flat: &[DVec3], field: &HeightField, rows: usize, spacing: f64) -> Self {
         let mut ys: Vec<f64> = flat.iter().map(|p| p.y).collect();
         base::sort_numbers(&mut ys);
         let (lo, hi) = (ys[0], ys[ys.len() - 1]);
@@ -44,8 +44,8 @@ impl Lines {
         let ends = bridged(&ends);
         let (left, right): (Vec<f64>, Vec<f64>) = ends.into_iter().unzip();
         let (mut left, mut right) = (smooth(&left, 1), smooth(&right, 1));
-        // The points of the first and the last station lie all on one side of it: from where they are, the margins go on to
-        // its end, where they meet at most.
+        // The points of the first and the last station all lie on one side of it: from their position the margins are
+        // extended to its end, where they meet at most.
         let last = rows - 1;
         for [end, inner] in [[0, 2.min(last)], [last, last.saturating_sub(2)]] {
             let run = heights[end] - heights[inner];
@@ -79,7 +79,7 @@ impl Lines {
     }
 }
 
-/// Stations without points take the mean of their neighbours (holes across the whole blade).
+/// Fills stations without points (holes across the whole blade) with the mean of their neighbours.
 fn bridged(ends: &[Option<(f64, f64)>]) -> Vec<(f64, f64)> {
     let known: Vec<(usize, (f64, f64))> =
         ends.iter().enumerate().filter_map(|(i, e)| Some((i, (*e)?))).collect();
@@ -107,8 +107,8 @@ fn smooth(line: &[f64], passes: usize) -> Vec<f64> {
     line
 }
 
-/// No step aside is longer than a step along the blade: a corner of a blunt base, which may be all of the first
-/// station, does not bend the midrib to it.
+/// Limits each sideways step to the length of a step along the blade: a corner of a blunt base, which may be all of the
+/// first station, does not bend the midrib towards it.
 pub(super) fn steady(line: &mut [f64], step: f64) {
     let half = line.len() / 2;
     for i in half + 1..line.len() {
@@ -119,7 +119,7 @@ pub(super) fn steady(line: &mut [f64], step: f64) {
     }
 }
 
-/// The midrib: the line near the middle along which the blade is folded most, as a valley or as a ridge.
+/// Returns the midrib: the line near the middle along which the blade is folded most, as a valley or as a ridge.
 fn crease(y: &[f64], left: &[f64], right: &[f64], field: &HeightField) -> Vec<f64> {
     const PLACES: usize = 31;
     let rows = y.len();
@@ -163,6 +163,6 @@ fn crease(y: &[f64], left: &[f64], right: &[f64], field: &HeightField) -> Vec<f6
     let (valley, ridge) = (path(1.0), path(-1.0));
     let line = if ridge.0 > valley.0 { ridge.1 } else { valley.1 };
     let xs: Vec<f64> = line.iter().enumerate().map(|(i, &k)| place(i, k)).collect();
-    // Steps of a place are not the midrib's: smoothed over about a twelfth of the leaf.
+    // Single steps are not the midrib's: smoothed over about a twelfth of the leaf.
     smooth(&xs, 12)
 }

@@ -1,7 +1,7 @@
 //! A scanned leaf -> midrib, outline, stalk and a surface, with its distances from the cloud.
 //!
-//! points -> an even sample without outliers -> stalk (where the cloud is a line) -> plane of the blade -> height
-//! field -> margins, midrib -> grid -> distances of all points
+//! points -> an even sample without outliers -> stalk (where the cloud is linear) -> plane of the blade -> height field
+//! -> margins, midrib -> grid -> distances of all points
 
 mod lines;
 mod near;
@@ -16,18 +16,18 @@ use self::lines::Lines;
 use self::near::{Near, segment_distance};
 use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
 
-/// How a leaf is sought in a cloud. Lengths in metres.
+/// Settings of the search for a leaf in a cloud. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanSpec {
     /// Rows of the surface's grid, 8 to 400. Default 64.
     pub rows: usize,
     /// Columns of the grid, 8 to 400, made odd. Default 41.
     pub columns: usize,
-    /// A point this near to the model is explained by it. Default 0.002.
+    /// Distance within which the model explains a point. Default 0.002.
     pub explained_m: f64,
     /// Stiffness of the surface, above 0: 0.01 follows the cloud, 1 is smooth. Default 0.05.
     pub smoothing: f64,
-    /// Where the blade sits on its stalk, if that is known: then the points are those of the blade alone. Default `None`.
+    /// Attachment of the blade to its stalk, if known: then the points are those of the blade alone. Default `None`.
     pub base: Option<DVec3>,
 }
 
@@ -42,35 +42,34 @@ impl Default for ScanSpec {
 pub struct ScanLeaf {
     /// Points of the blade, row after row from base to tip, each from left to right.
     pub grid: Vec<DVec3>,
-    /// Points a row; the midrib is the middle one.
+    /// Points per row; the midrib is the middle one.
     pub columns: usize,
-    /// The stalk, from the blade outwards, where the cloud has one.
+    /// The stalk, from the blade outwards, if the cloud has one.
     pub stalk: Option<BallBSpline>,
-    /// Points of the cloud that were used, and those that were dropped as outliers.
+    /// Number of points of the cloud that were used.
     pub used: usize,
-    /// Outliers: far from their neighbours, compared with the others.
+    /// Number of outliers, which are far from their neighbours compared with the others.
     pub outliers: usize,
     /// Distance of each used point from the model, metres.
     pub distances: Vec<f64>,
-    /// Share of all points of the cloud, outliers too, that are within `explained_m` of the model.
+    /// Share of all points of the cloud, including outliers, that are within `explained_m` of the model.
     pub explained: f64,
-    /// Share of the blade that has a point of the cloud within `explained_m`: what is not covered is a hole or
-    /// was bridged.
+    /// Share of the blade that has a point of the cloud within `explained_m`; the rest is a hole or was bridged.
     pub covered: f64,
-    /// The blade as marks, for the other commands; thickness unknown but for the stalk's at the last row.
+    /// The blade as marks, for the other commands; thickness unknown except for the stalk's at the last row.
     pub marks: Marks,
 }
 
-/// Why no leaf was found.
+/// Reason why no leaf was found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScanError {
-    /// Too few points, or all in one place or line.
+    /// There are too few points, or they all lie at one point or on a line.
     #[error(
         "{0} points are too few for a leaf, or lie on a line; a blade needs at least 100 that spread over it"
     )]
     TooFew(usize),
-    /// More points than one leaf needs.
+    /// There are more points than one leaf needs.
     #[error("{0} points are too many for one leaf; thin the cloud out to at most {1}")]
     TooMany(usize, usize),
     /// The surface could not be fitted.
@@ -81,31 +80,33 @@ pub enum ScanError {
     Cancelled(#[from] base::Cancelled),
 }
 
-/// As many as a scan's reader takes.
+/// Most points of a cloud, as for a scan's reader.
 const MOST_POINTS: usize = 32 << 20;
-/// Points from which the leaf is made; all are measured against it. A hand's leaf is covered every quarter of a
-/// millimetre, which is finer than its grid.
+/// Points from which the leaf is made; all are measured against it. On a leaf of a hand's length they are a quarter of
+/// a millimetre apart, which is finer than its grid.
 const SAMPLE: usize = 100_000;
-/// Points whose surroundings are looked at for a stalk.
+/// Points whose surroundings are searched for a stalk.
 const STALK_SAMPLE: usize = 4096;
-/// A point is no stray with company this near, as a share of the size of the leaf: a stalk is covered by few points where the
-/// cloud is sparse.
+/// Distance within which a neighbour keeps a point from being an outlier, as a share of the size of the leaf: in a
+/// sparse cloud a stalk has few points.
 const COMPANY: f64 = 0.15;
-/// A line: the second of its variances is at most this share of the first, which is a strip three times as long as wide; the
-/// margin of a blade has 0.25 and more. And how far around, in reaches, the places lie whose median counts.
+/// Largest ratio of the second variance to the first at which a cloud is a line: that of a strip three times as long as
+/// wide; the margin of a blade has 0.25 and more.
 const SLIM: f64 = 0.09;
+/// Radius, in reaches, of the neighbourhood over which the median of that ratio is taken.
 const AROUND: f64 = 0.5;
-/// Neighbours that show a direction.
+/// Least number of neighbours that define a direction.
 const FEW: usize = 8;
-/// Gaps that belong to a stalk, as a share of the deviation of the cloud along itself, which is 0.29 of its length.
+/// Longest gap within a stalk, as a share of the deviation of the cloud along itself, which is 0.29 of its length.
 const GAP: f64 = 0.7;
-/// Directions that are tried for the midrib of a leaf without a stalk, and how long the blade must be along it, of the longest.
+/// Directions that are tried for the midrib of a leaf without a stalk.
 const WAYS: u32 = 36;
+/// Least length of the blade along such a direction, as a share of the longest.
 const AS_LONG: f64 = 0.85;
-/// Cubes along a leaf of which each counts once where its plane is laid, however dense the cloud is there.
+/// Cubes along a leaf, each of which counts once when its plane is fitted, however dense the cloud is there.
 const EVEN: f64 = 40.0;
 
-/// The plane in which the blade is seen: x across, y from base to tip, z the upper side.
+/// The plane in which the blade is viewed: x across, y from base to tip, z the upper side.
 #[derive(Clone, Copy)]
 struct Plane {
     origin: DVec3,
@@ -127,10 +128,9 @@ impl Plane {
 
 /// Finds one leaf in a cloud of points: outliers, stalk, midrib, margins, surface.
 ///
-/// The blade must be a height over its own plane (folded back on itself it is not). Which end is the base is
-/// known from the stalk; without one it is the broader end, and `report` says so. Which side is the upper one
-/// follows +Y. Repeated points and uneven density do no harm: the leaf is made from an even sample. Cost: n log n;
-/// 5 million points take some seconds.
+/// The blade must be a height field over its own plane (folded back on itself it is not). The base is where the stalk
+/// is; without a stalk it is the broader end, and `report` says so. The upper side is chosen by +Y. Repeated points and
+/// uneven density do no harm: the leaf is made from an even sample. Cost: n log n; 5 million points take some seconds.
 ///
 /// # Errors
 /// [`ScanError`].
@@ -147,7 +147,7 @@ pub fn fit_scan(
     if all.len() > MOST_POINTS {
         return Err(ScanError::TooMany(all.len(), MOST_POINTS));
     }
-    let Some(sample) = Sample::of(&all, run) else { return Err(ScanError::TooFew(all.len())) };
+    let Some(sample) = Sample::from_cloud(&all, run) else { return Err(ScanError::TooFew(all.len())) };
     let Sample { points: kept, spacing, .. } = &sample;
     if kept.len() < 100 || *spacing <= 0.0 {
         return Err(ScanError::TooFew(kept.len()));
@@ -169,7 +169,7 @@ pub fn fit_scan(
     let flat: Vec<DVec3> = blade.iter().map(|&p| plane.local(p)).collect();
     let field = surface_of(&flat, *spacing, spec.smoothing)?;
     run.cancel.check()?;
-    let lines = Lines::of(&flat, &field, spec.rows.clamp(8, 400), *spacing);
+    let lines = Lines::from_points(&flat, &field, spec.rows.clamp(8, 400), *spacing);
     let columns = spec.columns.clamp(8, 400) | 1;
     let grid: Vec<DVec3> = lines.grid(columns, &field).into_iter().map(|p| plane.world(p)).collect();
     let stalk = stalk_curve(&stem, grid[columns / 2]);
@@ -209,12 +209,12 @@ pub fn fit_scan(
 }
 
 impl ScanLeaf {
-    /// The midrib from base to tip.
+    /// Returns the midrib from base to tip.
     pub fn midrib(&self) -> Vec<DVec3> {
         self.grid.chunks(self.columns).map(|row| row[self.columns / 2]).collect()
     }
 
-    /// The outline, up the right margin from the base and down the left.
+    /// Returns the outline, up the right margin from the base and down the left.
     pub fn outline(&self) -> Vec<DVec3> {
         let n = self.columns;
         let right = self.grid.chunks(n).map(|row| row[n - 1]);
@@ -223,32 +223,32 @@ impl ScanLeaf {
     }
 }
 
-/// The finite points of a cloud, few and even enough to work with.
+/// The finite points of a cloud, reduced to a manageable even sample.
 struct Sample {
-    /// Points with company.
+    /// Points that are not outliers.
     points: Vec<DVec3>,
-    /// How far it is from a point to its sixth neighbour, mostly.
+    /// Typical distance from a point to its sixth neighbour.
     spacing: f64,
-    /// A point without others within this distance is a stray.
+    /// Distance without neighbours at which a point is an outlier.
     alone: f64,
-    /// Those with company and those without, and which are without.
+    /// All points, and which of them are outliers.
     all: KdTree,
     stray: Vec<bool>,
-    /// Beyond this box nothing belongs to the leaf.
+    /// Box outside which nothing belongs to the leaf.
     bounds: [DVec3; 2],
 }
 
 impl Sample {
-    fn of(cloud: &[DVec3], run: &Run<'_>) -> Option<Self> {
+    fn from_cloud(cloud: &[DVec3], run: &Run<'_>) -> Option<Self> {
         let [lo, hi] = usual_box(&some(cloud, SAMPLE))?;
         let size = (hi - lo).max_element();
         if size <= 0.0 {
             return None;
         }
-        // A leaf may be three times as long as the box that all but a few of its points fill.
+        // A leaf may be three times as long as the box that contains all but a few of its points.
         let bounds = [lo - DVec3::splat(3.0 * size), hi + DVec3::splat(3.0 * size)];
         let inside: Vec<DVec3> = cloud.iter().copied().filter(|&p| within(p, bounds)).collect();
-        // Points in one place are one point, and no more is seen of a leaf than its size in 16,384 parts.
+        // Coincident points count once, and details below 1/16,384 of the size are ignored.
         let one_each: Vec<DVec3> =
             one_a_cube(&inside, size / 16_384.0).into_iter().map(|i| inside[i as usize]).collect();
         let points = some(&one_each, SAMPLE);
@@ -262,9 +262,9 @@ impl Sample {
         let mut sorted = sixth.clone();
         base::sort_numbers(&mut sorted);
         let (median, tenth) = (sorted[sorted.len() / 2], sorted[sorted.len() * 9 / 10]);
-        // Four times: stalks are thinner covered than blades, and their points must stay. So many as a tenth are no
-        // outliers: most points crowd in a part of the leaf then, and the others tell how wide the spacing is. On an
-        // even sheet the tenth is at 4/3 of the median.
+        // Four times: stalks have fewer points than blades, and these must stay. As many as a tenth are not outliers:
+        // most points then crowd in a part of the leaf, and the others determine the spacing. On an even sheet the
+        // tenth is at 4/3 of the median.
         let spacing = if tenth > 4.0 * median { 0.75 * tenth } else { median };
         let alone = (4.0 * spacing).max(COMPANY * size);
         let stray: Vec<bool> = sixth.iter().map(|&d| d > alone).collect();
@@ -274,7 +274,7 @@ impl Sample {
         Some(Self { points: kept, spacing, alone, all: tree, stray, bounds })
     }
 
-    /// True for a point of the cloud far from its neighbours: the next one of the sample tells.
+    /// Whether a point of the cloud is far from its neighbours, as decided by the nearest of the sample.
     fn is_stray(&self, p: DVec3) -> bool {
         !within(p, self.bounds) || self.all.nearest(p, self.alone).is_none_or(|k| self.stray[k])
     }
@@ -284,7 +284,7 @@ fn within(p: DVec3, [lo, hi]: [DVec3; 2]) -> bool {
     p.cmpge(lo).all() && p.cmple(hi).all()
 }
 
-/// At most so many points, spread over the list but not at even steps, which a scanner's lines may have too.
+/// Returns at most `most` points, spread over the list but not at even steps, which a scanner's lines may have too.
 fn some(points: &[DVec3], most: usize) -> Vec<DVec3> {
     if points.len() <= most {
         return points.to_vec();
@@ -294,7 +294,7 @@ fn some(points: &[DVec3], most: usize) -> Vec<DVec3> {
     (0..most).map(|k| points[at(k) + stream.below(at(k + 1) - at(k))]).collect()
 }
 
-/// The box of the points but for 1 in 200 at either end of each axis; each place counts once.
+/// Returns the box of the points except 1 in 200 at either end of each axis; coincident points count once.
 fn usual_box(points: &[DVec3]) -> Option<[DVec3; 2]> {
     let mut places = points.to_vec();
     let order =
@@ -313,7 +313,8 @@ fn usual_box(points: &[DVec3]) -> Option<[DVec3; 2]> {
     Some([DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1)])
 }
 
-/// True for points of the stalk: around them the cloud is a line, and together they are a long piece.
+/// Returns for each point whether it belongs to the stalk: around such points the cloud is a line, and together they
+/// are a long piece.
 fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     let Some((_, _, variances)) = geom::pca3(points) else { return vec![false; points.len()] };
     // Wider than a stalk is thick, narrower than a blade.
@@ -330,7 +331,7 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
         let near: Vec<DVec3> = near.iter().step_by(step).map(|&i| few[i]).collect();
         geom::pca3(&near).filter(|_| near.len() >= FEW).map_or(1.0, |(_, _, v)| v[1] / v[0].max(1e-300))
     });
-    // Of few points one place says little: the median of those around it does.
+    // With few points a single one is unreliable: the median of its neighbours decides.
     let line = map_indexed(run.executor, few.len(), |k| {
         let mut near = Vec::new();
         tree.within(few[k], AROUND * reach, &mut near);
@@ -347,15 +348,15 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     };
     let longest = groups.iter().enumerate().map(|(k, m)| (k, extent(m), m.len()));
     let longest = longest.filter(|g| g.2 >= 10).max_by(|a, b| a.1.total_cmp(&b.1));
-    // A scrap of margin is no stalk: it must be a good part of the leaf.
+    // A fragment of margin is not a stalk: that must be a considerable part of the leaf.
     let stalk = longest.filter(|g| g.1 > 0.5 * variances[0].sqrt()).map(|g| g.0);
     let Some(stalk) = stalk else { return vec![false; points.len()] };
     let next = map_indexed(run.executor, points.len(), |k| tree.nearest(points[k], f64::INFINITY));
     let mut thin: Vec<bool> = next.into_iter().map(|k| k.is_some_and(|k| group[k] == Some(stalk))).collect();
     let link = 4.0 * spacing;
     let linked = KdTree::new(points);
-    // The largest rest is the blade. Another piece belongs to what is nearer to it: the loose end of a stalk to
-    // the stalk, the far side of a hole to the blade.
+    // The largest remainder is the blade. Other pieces join the nearer part: the loose end of a stalk joins the stalk,
+    // the far side of a hole the blade.
     let (rest, rests) = pieces(points, &linked, link, |i| !thin[i]);
     let blade = (0..rests.len()).max_by_key(|&k| rests[k].len());
     let of = |wanted: &dyn Fn(usize) -> bool| -> Vec<DVec3> {
@@ -378,7 +379,8 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     thin
 }
 
-/// The points that `wanted` names, in pieces linked by steps of at most `link`: each point's piece, and pieces.
+/// Divides the points chosen by `wanted` into pieces linked by steps of at most `link`: the piece of each point, and
+/// the pieces.
 fn pieces(
     points: &[DVec3],
     grid: &KdTree,
@@ -424,7 +426,7 @@ fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plan
     let gap = |p: DVec3| Some(blade[tree.nearest(p, f64::INFINITY)?].distance_squared(p));
     let join = stem.iter().filter_map(|&p| Some((gap(p)?, p))).min_by(|a, b| a.0.total_cmp(&b.0));
     let y = match join {
-        // From where the stalk joins across the middle of the blade.
+        // From the junction of the stalk across the middle of the blade.
         Some((_, join)) => centre - join,
         None => {
             report.warn(
@@ -438,7 +440,7 @@ fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plan
             let way = mirror_line(&flat);
             let along = flat.iter().map(|p| p.dot(way));
             let (low, high) = along.fold((0.0_f64, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
-            // The middle of the blade is nearer to its broader end.
+            // The centroid of the blade is nearer to its broader end.
             let way = if high > -low { way } else { -way };
             axes[0] * way.x + axes[1] * way.y
         }
@@ -447,8 +449,8 @@ fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plan
     Some(Plane { origin: centre, x: y.cross(z), y, z })
 }
 
-/// The way along a blade: of the directions in which it is nearly as long as it can be that about which its two sides are
-/// most alike. A long blade leaves no choice; of a round one the longest direction is chance.
+/// Returns the direction along a blade: among the directions in which its length is nearly the greatest, the one about
+/// which its two sides are most alike. A long blade leaves no choice; for a round one the longest direction is random.
 fn mirror_line(flat: &[DVec2]) -> DVec2 {
     let lift = |p: &DVec2| p.extend(0.0);
     let tree = KdTree::new(&flat.iter().map(lift).collect::<Vec<DVec3>>());
@@ -458,7 +460,7 @@ fn mirror_line(flat: &[DVec2]) -> DVec2 {
             let way = DVec2::new(cos, sin);
             let mut along: Vec<f64> = flat.iter().map(|p| p.dot(way)).collect();
             base::sort_numbers(&mut along);
-            // One in a hundred at either end may be a rag.
+            // One in a hundred at either end may be ragged.
             let cut = along.len() / 100;
             (way, along[along.len() - 1 - cut] - along[cut])
         })
@@ -473,7 +475,7 @@ fn mirror_line(flat: &[DVec2]) -> DVec2 {
     able.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(DVec2::X, |w| w.1)
 }
 
-/// The surface, by repeated fits that count far points less (Tukey's biweight).
+/// Fits the surface, by repeated fits that give far points less weight (Tukey's biweight).
 fn surface_of(flat: &[DVec3], spacing: f64, smoothing: f64) -> Result<HeightField, SplineError> {
     let size = |axis: fn(&DVec3) -> f64| {
         let (lo, hi) =
@@ -481,7 +483,7 @@ fn surface_of(flat: &[DVec3], spacing: f64, smoothing: f64) -> Result<HeightFiel
         hi - lo
     };
     let (wide, long) = (size(|p| p.x), size(|p| p.y));
-    // A control every four points' distances, at most 18 a side: folds of a centimetre on a hand-long leaf.
+    // A control every four points' distances, at most 18 per side: folds of a centimetre on a leaf of a hand's length.
     let step = (wide.max(long) / 15.0).max(4.0 * spacing);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before the cast")]
     let count = |x: f64| ((x / step).ceil().clamp(1.0, 15.0) as usize) + 3;
@@ -492,7 +494,7 @@ fn surface_of(flat: &[DVec3], spacing: f64, smoothing: f64) -> Result<HeightFiel
         let off: Vec<f64> = flat.iter().map(|p| (p.z - field.height(p.x, p.y).0).abs()).collect();
         let mut sorted = off.clone();
         base::sort_numbers(&mut sorted);
-        // 4.685 deviations, the deviation from the median (Huber 1981); not below rounding.
+        // 4.685 deviations, the deviation estimated from the median (Huber 1981); not below rounding.
         let scale = (4.685 * 1.4826 * sorted[sorted.len() / 2]).max(1e-9);
         for (w, d) in weights.iter_mut().zip(&off) {
             let x = d / scale;
@@ -503,7 +505,7 @@ fn surface_of(flat: &[DVec3], spacing: f64, smoothing: f64) -> Result<HeightFiel
     Ok(field)
 }
 
-/// The stalk's centre line by distance from where it joins, with its mean radius.
+/// Fits the stalk's centre line by distance from its junction, with its mean radius.
 fn stalk_curve(stem: &[DVec3], base: DVec3) -> Option<BallBSpline> {
     let far = stem.iter().map(|p| p.distance(base)).fold(0.0, f64::max);
     let bins = 10;
@@ -534,13 +536,13 @@ fn stalk_curve(stem: &[DVec3], base: DVec3) -> Option<BallBSpline> {
     };
     let mut radii: Vec<f64> = stem.iter().map(|&p| off(p)).collect();
     base::sort_numbers(&mut radii);
-    // The scanner sees the near half: its points lie about a radius from their mean line, strays farther.
+    // The scanner sees the near half: its points lie about a radius from their mean line, outliers farther.
     let radius = radii[radii.len() / 2].max(1e-6);
     let balls: Vec<Ball> = line.iter().map(|&p| Ball::new(p, radius)).collect();
     BallBSpline::interpolate(&balls).ok()
 }
 
-/// Twelve rows of seven marks, from the tip down, right to left.
+/// Makes twelve rows of seven marks, from the tip down, right to left.
 fn marks_of(grid: &[DVec3], columns: usize, stalk: Option<&BallBSpline>) -> Marks {
     let rows = grid.len() / columns;
     let count = 12.min(rows - 1);

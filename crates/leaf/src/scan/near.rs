@@ -1,4 +1,4 @@
-//! How far a point lies from a leaf that was found: its grid and its stalk.
+//! Distance of a point from a leaf that was found: its grid and its stalk.
 
 use geom::{Ball, BallBSpline, KdTree};
 use glam::DVec3;
@@ -8,7 +8,7 @@ pub(super) struct Near<'a> {
     grid: &'a [DVec3],
     columns: usize,
     points: KdTree,
-    /// The box round each cell of the grid, by its first corner.
+    /// The bounding box of each cell of the grid, by its first corner.
     boxes: Vec<[DVec3; 2]>,
     stalk: Vec<Ball>,
     centres: KdTree,
@@ -36,7 +36,7 @@ impl<'a> Near<'a> {
 
     pub(super) fn distance(&self, p: DVec3) -> f64 {
         let from_tube = |k: usize| {
-            // A piece to each side: 200 pieces bend little from one to the next.
+            // A piece on each side: 200 pieces bend little from one to the next.
             let pieces = self.stalk[k.saturating_sub(1)..self.stalk.len().min(k + 2)].windows(2);
             let each = pieces.map(|w| (segment_distance(p, w[0].centre, w[1].centre) - w[0].radius).abs());
             each.fold(f64::INFINITY, f64::min)
@@ -46,7 +46,7 @@ impl<'a> Near<'a> {
         best = best.min(p.distance(self.grid[near]));
         let (n, rows) = (self.columns, self.grid.len() / self.columns);
         let (i, j) = (near / n, near % n);
-        // Two cells to each side: the nearest point of a stretched grid need not be on the nearest triangle.
+        // Two cells on each side: the nearest point of a stretched grid need not be on the nearest triangle.
         for y in i.saturating_sub(2)..(i + 2).min(rows - 1) {
             for x in j.saturating_sub(2)..(j + 2).min(n - 1) {
                 let [lo, hi] = self.boxes[y * n + x];

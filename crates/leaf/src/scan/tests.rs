@@ -2,12 +2,12 @@ use super::lines::steady;
 use super::*;
 use base::{Draw, Seed, ops};
 
-/// A leaf of 60 mm with a stalk of 40 mm, bent and folded, noise 0.2 mm, a hole and strays.
+/// Makes a leaf of 60 mm with a stalk of 40 mm, bent and folded, noise 0.2 mm, a hole and outliers.
 fn cloud() -> Vec<DVec3> {
     leaf_of(4000)
 }
 
-/// With so many points of the blade, and a sixteenth of it of the stalk.
+/// Makes it with `count` points of the blade, and a sixteenth of that for the stalk.
 fn leaf_of(count: usize) -> Vec<DVec3> {
     let mut s = Seed::new(11).stream(Draw::Test);
     let mut out = Vec::new();
@@ -44,7 +44,7 @@ fn a_made_leaf_is_found_to_its_noise() {
     assert!(worst < 0.0025, "{worst}");
     assert!(midrib[0].z > -0.01 && midrib[midrib.len() - 1].z < -0.055);
     let full = leaf.marks.complete(&mut Report::default()).unwrap();
-    // The arc is 63 mm long; a few millimetres of its narrow ends pass for stalk.
+    // The arc is 63 mm long; a few millimetres of its narrow ends are taken for stalk.
     let length = geom::polyline_length3(&full.midrib());
     assert!(length > 0.048 && length < 0.068, "{length}");
 }
@@ -111,7 +111,7 @@ fn repeated_points_a_crowd_and_far_strays_change_no_leaf() {
 
 #[test]
 fn a_round_leaf_lies_along_its_midrib_however_dense_it_is() {
-    // As wide as long, two sides alike, a broad base: the longest direction of its points is chance.
+    // As wide as long, two sides alike, a broad base: the longest direction of its points is random.
     let mut s = Seed::new(8).stream(Draw::Test);
     let way = DVec2::new(0.6, 0.8);
     let mut all = Vec::new();

@@ -48,7 +48,7 @@ fn half_and_a_quarter_of_our_own_scan_are_the_same_leaf() {
     thinned(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scans/leaf.txt"));
 }
 
-/// A leaf of all points, and of a part of them.
+/// Makes a leaf from all points, and from a part of them.
 #[expect(clippy::print_stdout, reason = "figures for whoever looks for them")]
 fn thinned(file: &Path) {
     let all = read(file);

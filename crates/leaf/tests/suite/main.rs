@@ -1,4 +1,5 @@
-//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-leaf --test suite MODULE::`.
+//! The integration tests, linked as one program. One module of them:
+//! `cargo test -p burgeon-leaf --test suite MODULE::`.
 
 #[path = "../../../base/tests/missing/mod.rs"]
 mod missing;

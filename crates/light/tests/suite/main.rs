@@ -2,4 +2,5 @@
 
 mod canopies;
 mod plates;
+mod rami;
 mod scenes;

@@ -104,7 +104,7 @@ fn a_ball_absorbs_the_beam_that_its_outline_cuts_out() {
         // Half of it is in the sun, the other half in its own shadow.
         assert!((found.receivers[0].sunlit.expect("a sun") - 0.5).abs() < 0.01);
     }
-    // Of a uniform sky of radiance L, with its half sphere of directions: pi r^2 times 2 pi L, where a plane gets pi L.
+    // In a uniform sky of radiance L and its half sphere of directions: pi r^2 times 2 pi L, where a plane gets pi L.
     let found = lit(&scene, &Beams::sky(SkyKind::Uniform, 100.0).expect("a sky"), &spec);
     let whole = 2.0 * 100.0 * base::ops::PI * radius * radius;
     assert!(

@@ -1,10 +1,10 @@
-//! Scenes of which is known what they absorb.
+//! Scenes whose absorption is known.
 
 use base::{Draw, Seed, ops};
 use glam::DVec3;
 use light::{LitScene, Optics};
 
-/// A rectangle of two triangles around a place, with its front along `normal`.
+/// Adds a rectangle of two triangles around a place, with its front along `normal`.
 pub(crate) fn add_square(scene: &mut LitScene, middle: DVec3, normal: DVec3, side: f64, owner: u32) {
     let (a, b) = normal.any_orthonormal_pair();
     let (a, b) = (a * side * 0.5, b * side * 0.5);
@@ -14,7 +14,8 @@ pub(crate) fn add_square(scene: &mut LitScene, middle: DVec3, normal: DVec3, sid
     scene.owners.extend([owner, owner]);
 }
 
-/// A canopy of small square leaves in a cell of 1 m by 1 m, in a layer above the ground, in all directions evenly.
+/// Makes a canopy of small square leaves in a cell of 1 m by 1 m, in a layer above the ground, in all directions
+/// evenly.
 pub(crate) fn canopy(leaf_area_index: f64, side: f64, optics: Optics, seed: u64) -> LitScene {
     let mut chance = Seed::new(seed).stream(Draw::Test);
     let count = ops::whole((leaf_area_index / (side * side)).round());
@@ -29,7 +30,7 @@ pub(crate) fn canopy(leaf_area_index: f64, side: f64, optics: Optics, seed: u64)
     scene
 }
 
-/// A ball of triangles around a place.
+/// Makes a ball of triangles around a place.
 pub(crate) fn ball(middle: DVec3, radius: f64, rings: u32) -> LitScene {
     let turns = 2 * rings;
     let mut scene = LitScene { receivers: vec![Optics::BLACK], ..LitScene::default() };

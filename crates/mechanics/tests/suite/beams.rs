@@ -105,8 +105,9 @@ fn a_fork_swings_as_often_as_a_fine_one_of_beams() {
     assert!((found / fine - 1.0).abs() < 0.1, "{found} Hz, of fine beams {fine}");
 }
 
-/// The lowest frequency of the fork in which it moves along `sway`, by the method of Stodola with 1,500 pieces: the form
-/// under the forces of inertia of the form before. Forces act at the middle of each piece, and arms bend and are carried along.
+/// Returns the lowest frequency of the fork in which it moves along `sway`, by the method of Stodola with 1,500 pieces:
+/// the form under the forces of inertia of the form before. Forces act at the middle of each piece, and arms bend and
+/// move with their bearer.
 fn fine_fork_hz(sway: DVec3) -> f64 {
     const PIECES: usize = 500;
     let (stem, arm) = (LENGTH_M / PIECES as f64, 0.5 / PIECES as f64);
@@ -124,7 +125,7 @@ fn fine_fork_hz(sway: DVec3) -> f64 {
         lines.iter().map(|l| l.iter().map(|p| sway * p.y * p.y).collect()).collect();
     let mut squared = 0.0;
     for _ in 0..30 {
-        // Sums of force and of moment about the origin of all that lies beyond each piece.
+        // Sums of force and of moment about the origin of all pieces beyond each piece.
         let beyond = |line: usize, start: (DVec3, DVec3)| {
             let mut sums = vec![start; PIECES];
             let mut sum = start;
@@ -148,7 +149,7 @@ fn fine_fork_hz(sway: DVec3) -> f64 {
         };
         let (mut next, mut crotch) = (form.clone(), (DVec3::ZERO, DVec3::ZERO));
         for line in 0..3 {
-            // Turned so far, and the sum of turn x place: a place p has moved by turned x p - sum.
+            // Accumulated rotation, and the sum of rotation x place: a place p has moved by rotation x p - sum.
             let (mut turned, mut sum) = if line == 0 { (DVec3::ZERO, DVec3::ZERO) } else { crotch };
             for k in 0..PIECES {
                 let own = turn(line, k);
@@ -172,7 +173,8 @@ fn fine_fork_hz(sway: DVec3) -> f64 {
 
 #[test]
 fn the_fine_reference_knows_the_frequency_of_a_rod() {
-    // A rod of one and a half metres is a fork whose arms lie on one line, but for twice the mass: only its order is known here.
+    // A rod of one and a half metres is a fork whose arms lie on one line, but with twice the mass: only its order is
+    // known here.
     let root = 1.875_104_07_f64;
     let rod = root * root * (bending_stiffness() / kilograms_per_metre()).sqrt() / TAU;
     let fork = fine_fork_hz(DVec3::Z);
@@ -210,7 +212,7 @@ fn springs_hold_a_leaning_rod_where_it_was() {
     for (row, body) in made.bodies.iter().enumerate() {
         let Some(joint) = body.joint else { continue };
         for (axis, rest) in joint.axes.iter().zip(joint.rest_rad) {
-            // The moment of all that moves on it.
+            // The moment of all bodies that move on it.
             let weight: f64 = made.bodies[row..]
                 .iter()
                 .map(|b| axis.dot((b.centre - body.origin).cross(DVec3::NEG_Y * (9.81 * b.mass))))

@@ -1,4 +1,4 @@
-//! Plants that no simulator takes are refused; odd ones give finite numbers.
+//! Plants that no simulator accepts are refused; odd ones give finite numbers.
 
 use base::{Budget, Report, Run};
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! What a picture must show, pixel by pixel.
+//! Tests the contents of pictures, pixel by pixel.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::sync::Arc;
@@ -122,7 +122,7 @@ fn shadow_falls_away_from_the_sun_and_nowhere_else() {
 
 #[test]
 fn lit_surfaces_show_no_acne() {
-    // A large slanted plate: but for its edges it must be evenly lit.
+    // A large slanted plate: except for its edges it must be evenly lit.
     let plate = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]];
     let p = picture(
         &model(&[(&plate, &QUAD, [0.5; 3])]),

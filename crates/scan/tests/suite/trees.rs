@@ -1,12 +1,14 @@
-//! Trees that are known, scanned by a virtual scanner and found again; and scans that are no good.
+//! Known trees, scanned by a virtual scanner and found again; and scans that are unusable.
 
 use base::{Draw, Executor, Report, Run, Seed, ops};
 use glam::DVec3;
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, PointClass, PointCloud, TriMesh};
 use plant::{AxisKind, NodeId, Plant};
-use scan::{ScanTreeError, ScannerSpec, TreeScanSpec, find_plot, find_tree, scan, wood_gap, wood_mesh};
+use scan::{
+    ScanPoints, ScanTreeError, ScannerSpec, TreeScanSpec, find_plot, find_tree, scan, wood_gap, wood_mesh,
+};
 
-/// Jobs in the other order.
+/// Runs jobs in reverse order.
 struct Backwards;
 impl Executor for Backwards {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
@@ -14,14 +16,15 @@ impl Executor for Backwards {
     }
 }
 
-/// The same as large, radii too.
+/// Returns the plant scaled, with its radii.
 fn scaled(mut p: Plant, by: f64) -> Plant {
     p.nodes.position.iter_mut().for_each(|q| *q *= by);
     p.nodes.radius_m.iter_mut().for_each(|r| *r *= by);
     p
 }
 
-/// A trunk of 6 m with ten boughs of a metre or two, each with three twigs. Radii follow the pipe model with n = 2.
+/// Returns a trunk of 6 m with ten boughs of a metre or two, each with three twigs. Radii follow the pipe model with
+/// n = 2.
 fn tree() -> Plant {
     let mut p = Plant::default();
     let mut s = Seed::new(4).stream(Draw::Test);
@@ -84,7 +87,7 @@ fn grid(corner: DVec3, u: DVec3, v: DVec3, n: u32) -> TriMesh {
     mesh
 }
 
-/// Clouds of meshes from three places.
+/// Returns clouds of meshes from three places.
 fn cloud(meshes: &[TriMesh]) -> Vec<DVec3> {
     let mut scene = Model::default();
     scene.materials.push(Material::plain("all", MaterialKind::Other, [0.5; 3]));
@@ -140,7 +143,7 @@ fn volume_height_and_diameter_come_back_and_the_cone_is_far_off() {
     assert_eq!(again.plant.digest_hex(), found.plant.digest_hex());
 }
 
-/// Leaves of 6 cm, ten along each twig and bough.
+/// Returns leaves of 6 cm, ten along each twig and bough.
 fn leaves(p: &Plant) -> TriMesh {
     let mut mesh = TriMesh::default();
     let mut s = Seed::new(9).stream(Draw::Test);
@@ -245,10 +248,10 @@ fn scans_that_are_no_good_say_so() {
     // Millimetres taken for metres.
     let large: Vec<DVec3> = points.iter().map(|p| *p * 1000.0).collect();
     assert!(matches!(find(&large).0, Err(ScanTreeError::TooLarge(_))));
-    // Lying down: the way up that there is, is told.
+    // Lying on its side: the error names the axis that points up.
     let lying: Vec<DVec3> = points.iter().map(|p| DVec3::new(p.x, -p.z, p.y)).collect();
     assert!(find(&lying).1.contains(&"scan-lies-down"));
-    // Without a ground, and with points that are none.
+    // Without a ground, and with invalid points.
     let mut bare = cloud(&[wood_mesh(&truth)]);
     bare.extend([DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e300)]);
     let (found, warnings) = find(&bare);
@@ -261,7 +264,7 @@ fn scans_that_are_no_good_say_so() {
     assert!((volume / truth.measure().wood_volume_m3 - 1.0).abs() < 0.05, "{volume}");
 }
 
-/// Points of the tree on its slope, less those between two heights over the ground.
+/// Returns the points of the tree on its slope, without those between two heights over the ground.
 fn with_gap(points: &[DVec3], from: f64, to: f64) -> Vec<DVec3> {
     points.iter().copied().filter(|p| !(from..to).contains(&(p.y - 0.06 * p.x))).collect()
 }
@@ -282,7 +285,7 @@ fn a_crown_beyond_a_gap_belongs_to_its_trunk_and_it_is_told() {
         b.wood_volume_m3,
         a.wood_volume_m3
     );
-    // Who says which gaps may be bridged gets no wider ones, and is told what was left out.
+    // With an explicit gap the search bridges no wider ones, and reports what was left out.
     let spec = TreeScanSpec { gap_m: Some(0.2), ..TreeScanSpec::default() };
     let found = find_tree(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
     let t = found.tally;
@@ -295,7 +298,7 @@ fn a_crown_beyond_a_gap_belongs_to_its_trunk_and_it_is_told() {
 fn trunks_are_counted_and_the_stem_at_a_place_is_taken_and_not_a_weed() {
     let truth = tree();
     let other = moved(tree(), DVec3::new(2.2, 0.1, 0.8));
-    // A weed between the two, nearer to the place that is said.
+    // A weed between the two, nearer to the given place.
     let mut weed = Plant::default();
     weed.add_axis(AxisKind::Stem, None, 0, &[DVec3::new(1.9, 0.0, 0.2), DVec3::new(1.9, 0.8, 0.2)], None);
     weed.nodes.radius_m.fill(0.03);
@@ -336,7 +339,7 @@ fn figures_lie_in_their_intervals() {
     let holds = |i: scan::Interval, x: f64| i.low <= x && x <= i.high;
     assert!(holds(i.height_m, a.height_m) && i.dbh_m.is_some_and(|d| holds(d, a.dbh_m.unwrap())), "{i:?}");
     assert!(holds(i.volume_m3, a.wood_volume_m3), "{i:?} {}", a.wood_volume_m3);
-    // They are no wider than they are of use.
+    // The intervals are not wider than is useful.
     assert!(i.volume_m3.high < 1.4 * i.volume_m3.low && i.height_m.high < 1.05 * i.height_m.low, "{i:?}");
 }
 
@@ -377,7 +380,7 @@ fn the_trees_of_a_plot_are_found_and_their_points_shared() {
             a.wood_volume_m3
         );
     }
-    // The same, whichever point comes first.
+    // The result does not depend on the order of the points.
     let turned: Vec<DVec3> = points.iter().rev().copied().collect();
     let again = find_plot(&turned, &spec, &Run::plain(), &mut Report::default()).unwrap();
     let counts = |p: &scan::Plot| p.trees.iter().map(|t| t.points).collect::<Vec<_>>();
@@ -409,4 +412,55 @@ fn a_bough_that_touches_a_smaller_tree_does_not_take_its_top() {
             a.wood_volume_m3
         );
     }
+}
+
+/// A tree in leaf with its ground: points, and what a file says of them.
+fn labelled() -> PointCloud {
+    let truth = tree();
+    let mut leaves = TriMesh::default();
+    let mut s = Seed::new(9).stream(Draw::Test);
+    for axis in truth.axes.iter().filter(|a| a.bearer.is_some()) {
+        for node in axis.node_ids().flat_map(|node| [node; 8]) {
+            let mut any = || DVec3::new(s.range(-1.0, 1.0), s.range(-1.0, 1.0), s.range(-1.0, 1.0));
+            let at = truth.nodes.position[node.index()] + 0.15 * any();
+            leaves.append(&grid(at, 0.05 * any().normalize(), 0.05 * any().normalize(), 1));
+        }
+    }
+    let mut out = PointCloud::default();
+    for (mesh, class) in
+        [(ground(), PointClass::Ground), (wood_mesh(&truth), PointClass::Wood), (leaves, PointClass::Leaf)]
+    {
+        out.points.extend(cloud(&[mesh]));
+        out.classes.resize(out.points.len(), class);
+    }
+    out
+}
+
+#[test]
+fn ground_wood_and_leaves_are_what_the_file_says() {
+    let truth = tree().measure();
+    let cloud = labelled();
+    let count = |class| cloud.classes.iter().filter(|c| **c == class).count();
+    let find = |points: ScanPoints<'_>| {
+        let mut report = Report::default();
+        let found = find_tree(points, &TreeScanSpec::default(), &Run::plain(), &mut report).unwrap();
+        (found, report.warnings.iter().any(|w| w.code == "scan-classes"))
+    };
+    let (said, is_told) = find((&cloud).into());
+    let (seen, is_told_too) = find((&cloud.points).into());
+    assert!(is_told && !is_told_too);
+    let off =
+        |found: &scan::FoundTree| (found.plant.measure().wood_volume_m3 / truth.wood_volume_m3 - 1.0).abs();
+    println!("volume off by {:.3} with classes, {:.3} without", off(&said), off(&seen));
+    assert!(off(&said) < 0.06 && off(&said) < off(&seen), "{} {}", off(&said), off(&seen));
+    assert!((said.plant.measure().height_m / truth.height_m - 1.0).abs() < 0.05);
+    // No point of the ground stands on it, and leaves are leaves but for those in cubes of wood.
+    assert!(said.tally.ground >= count(PointClass::Ground), "{:?}", said.tally);
+    let leaves = said.tally.leaves as f64 / count(PointClass::Leaf) as f64;
+    assert!((0.6..1.05).contains(&leaves), "{leaves} {:?}", said.tally);
+    // The trees of a plot keep what is said of their points.
+    let plot = find_plot(&cloud, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!(plot.classes_of(0).len(), plot.points_of(0).len());
+    let tree = plot.find_tree(0, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+    assert!(off(&tree) < 0.06, "{}", off(&tree));
 }

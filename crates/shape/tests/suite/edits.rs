@@ -1,4 +1,4 @@
-//! Every edit on plants of every maker: sound, deterministic, honest.
+//! Every edit on plants of every maker: sound, deterministic, and reported truthfully.
 
 use base::{Budget, Counted, Executor, NoClock, OverBudget, Report, Run, Seed, Stopped};
 use glam::{DVec2, DVec3};
@@ -29,7 +29,7 @@ fn tree(kind: usize, seed: u64) -> Plant {
     grow(&spec, None, Seed::new(seed), &Run::plain(), &mut Report::default()).expect("sound").plant
 }
 
-/// A tree and a flower from pens.
+/// Returns a tree and a flower drawn with pens.
 fn drawn(kind: usize, seed: u64) -> Plant {
     let line = |points: &[(f64, f64)]| -> Vec<DVec2> {
         let points: Vec<DVec2> = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
@@ -182,7 +182,7 @@ proptest! {
         let plant = plant_of(kind, seed);
         prop_assert_eq!(plant.validate().next(), None);
         let one = done(&plant, &edits);
-        // One after another is the same as all at once, and threads do not matter.
+        // Edits one after another give the same as all at once, and threads do not matter.
         let run = Run { executor: &Backwards, clock: &NoClock, ..Run::plain() };
         let other = apply(&plant, &edits, &Context::default(), &run).expect("not cancelled");
         prop_assert_eq!(one.plant.digest_hex(), other.plant.digest_hex());
@@ -196,7 +196,7 @@ proptest! {
             step = single.plant;
         }
         for axis in (0..plant.axes.len()).step_by(7).map(AxisId::new) {
-            let key = AxisKey::of(&plant, axis).expect("there");
+            let key = AxisKey::for_axis(&plant, axis).expect("there");
             prop_assert_eq!(key.find(&plant).map(|f| (plant.axis(f.axis).key, f.by_likeness)), Ok((plant.axis(axis).key, false)));
         }
     }
@@ -287,7 +287,7 @@ fn regrowing_one_branch_leaves_the_rest() {
             let same = a.plant.axes.iter().position(|b| b.key == axis.key).map(AxisId::new).expect("kept");
             assert_eq!(a.plant.axis_points(same), plant.axis_points(AxisId::new(i)));
         }
-        // The base is where it was, and the name is the same.
+        // The base is where it was, and the key is the same.
         let now = path(&[0, 2]).find(&a.plant).expect("there").axis;
         assert_eq!(a.plant.axis(now).key, plant.axis(limb).key);
     }
@@ -343,7 +343,7 @@ fn a_branch_that_leaves_a_silhouette_and_comes_back_is_cut_where_it_leaves() {
         None,
     );
     let at = |plant: &Plant, node: u32| Some(NodeId::new((plant.axis(trunk).nodes.start + node) as usize));
-    // Out to the right and back; one that starts below and rises into it.
+    // To the right and back; a line that starts below and rises into it.
     let bearer = at(&plant, 2);
     let back = line(&[(0.0, 3.0), (1.5, 3.4), (4.0, 3.8), (4.2, 4.6), (1.2, 5.0), (0.5, 5.2)]);
     plant.add_axis(branch, bearer, 2, &back, None);
@@ -389,7 +389,7 @@ fn a_silhouette_is_filled_and_what_leaves_it_is_cut() {
         };
         let crown = p.nodes.position.iter().filter(|q| q.y > 2.3).map(|q| off(q.truncate()));
         assert!(crown.fold(0.0, f64::max) < 0.45, "{kind}: nothing stands out");
-        // Cells of the outline that wood passes.
+        // Cells of the outline that wood passes through.
         let hit = |x: f64, y: f64| {
             p.nodes.position.iter().any(|q| (q.x - x).abs() < 0.35 && (q.y - y).abs() < 0.35)
         };
@@ -422,20 +422,20 @@ fn marks_survive_other_edits_and_drawn_branches_a_change_of_seed() {
     let plant = drawn(0, 1);
     let other = drawn(0, 9);
     for axis in (0..plant.axes.len()).map(AxisId::new).filter(|a| plant.axis(*a).source.is_some()) {
-        let key = AxisKey::of(&plant, axis).expect("there");
+        let key = AxisKey::for_axis(&plant, axis).expect("there");
         let found = key.find(&other).expect("a drawn branch is there for every seed");
         assert_eq!(other.axis(found.axis).source, plant.axis(axis).source);
     }
     let tree = tree(0, 1);
     let axis = path(&[0, 4]).find(&tree).expect("there").axis;
-    let key = AxisKey::of(&tree, axis).expect("there");
+    let key = AxisKey::for_axis(&tree, axis).expect("there");
     let cut = done(&tree, &[HandEdit::Prune { axis: path(&[0, 1]), at: 0.0 }]).plant;
     assert_eq!(key.find(&cut).map(|f| cut.axis(f.axis).key), Ok(tree.axis(axis).key));
     let gone = done(
         &tree,
         &[HandEdit::Prune { axis: key.clone(), at: 0.0 }, HandEdit::Prune { axis: key, at: 0.0 }],
     );
-    // Either nothing is like it, or a branch that is: never a fault.
+    // Either nothing is like it, or a similar branch is found: never a fault.
     assert!(gone.outcomes[0].is_done());
 }
 
@@ -453,7 +453,7 @@ fn edits_are_read_back_from_their_file_form() {
 
 #[test]
 fn what_is_filled_or_brushed_leaves_the_trunk_as_thick_as_it_was() {
-    // Many times as much wood as there was: by the pipe model alone the trunk would be twice as thick.
+    // Many times the previous wood: by the pipe model alone the trunk would be twice as thick.
     let wide = [(-3.0, 1.5), (3.0, 1.5), (4.0, 4.5), (0.0, 8.0), (-4.0, 4.5)].map(DVec2::from).to_vec();
     for kind in [0, 3] {
         let plant = tree(kind, 1);
@@ -516,7 +516,7 @@ fn a_brush_that_begins_in_the_bark_begins_at_the_surface() {
             })
             .fold(f64::INFINITY, f64::min)
     };
-    // What the new branches bear starts outside of the trunk.
+    // The branches of the new ones start outside the trunk.
     for axis in grown.axes.iter().filter(|a| !plant.axes.iter().any(|b| b.key == a.key) && !on_trunk(a)) {
         let base = axis.bearer.map(|n| grown.nodes.position[n.index()]).expect("borne");
         assert!(depth(base) > 0.2, "a branch starts {} m from the middle of a trunk of 0.25 m", depth(base));
@@ -531,7 +531,7 @@ fn a_copy_is_the_branch_again_with_all_that_it_bears() {
     for kind in 0..6 {
         let plant = plant_of(kind, 3);
         let paths = AxisKey::paths(&plant);
-        // A flower has a stem alone: it is copied over the ground.
+        // A flower has only a stem: it is copied over the ground.
         let limb = paths.iter().find(|(_, p)| p.len() == 2);
         let (limb, path_of) = limb.unwrap_or(&paths[0]);
         assert!(kind == 5 || path_of.len() == 2, "a limb on plant {kind}");
@@ -554,7 +554,7 @@ fn a_copy_is_the_branch_again_with_all_that_it_bears() {
             "plant {kind}: {organs} {flowers}"
         );
         assert_eq!(count(&a.plant), count(&plant) + organs + flowers, "plant {kind}");
-        // All keys are other keys, and the copy is as long and as crooked as the branch.
+        // All keys are new, and the copy is as long and as crooked as the branch.
         let mut keys: Vec<u64> = a.plant.axes.iter().map(|x| x.key).collect();
         keys.sort_unstable();
         let before = plant.axes.len() - {
@@ -574,7 +574,7 @@ fn a_copy_is_the_branch_again_with_all_that_it_bears() {
                 && chords(line).iter().zip(chords(old)).all(|(a, b)| (a - b).abs() < 1e-9 * (1.0 + b))
         });
         assert!(twin.is_some(), "plant {kind}: a branch of the same form");
-        // What is not below the copy has not moved by a bit.
+        // Parts that are not below the copy have not moved by a bit.
         let leaf = |p: &Plant| p.organs.iter().take(5).map(|o| o.frame).collect::<Vec<_>>();
         assert_eq!(leaf(&a.plant), leaf(&plant), "plant {kind}");
         // The same copy twice: two branches with keys of their own.
@@ -583,7 +583,7 @@ fn a_copy_is_the_branch_again_with_all_that_it_bears() {
     }
 }
 
-/// A stem of so many nodes, and an edit that copies it with all its copies onto itself.
+/// Makes a stem of this many nodes, and an edit that copies it with all its copies onto itself.
 fn doubling(nodes: i32) -> (Plant, HandEdit) {
     let mut plant = Plant::default();
     let line: Vec<DVec3> = (0..nodes).map(|i| DVec3::Y * (1e-4 * f64::from(i))).collect();
@@ -610,7 +610,7 @@ fn copies_of_copies_are_refused_before_they_are_made() {
     for (copies, times) in [(5, 1.0), (200, 1.0), (4, 0.25)] {
         let much = over_budget(&plant, &vec![double.clone(); copies], times).expect("too much");
         assert_eq!(much.what, Counted::Pieces);
-        // The copy that would be too much is not begun: the plant was within the limit, and doubles.
+        // The copy that would exceed the limit is not begun: the plant was within the limit, and doubles.
         assert!((much.limit + 1..=2 * much.limit + 16).contains(&much.number), "{much}");
         assert!(much.to_string().contains("copy fewer branches"), "{much}");
     }
@@ -628,7 +628,7 @@ fn edits_of_a_large_plant_are_counted_by_what_they_go_through() {
     assert_eq!((much.what, much.number), (Counted::EditedPieces, 400_000));
 }
 
-/// A trunk with a limb on either side of the plane x = 0, and leaves on them.
+/// Makes a trunk with a limb on either side of the plane x = 0, and leaves on them.
 fn even() -> Plant {
     let tree = tree(0, 1);
     let mut p = Plant { shapes: tree.shapes.clone(), ..Plant::default() };
@@ -738,7 +738,7 @@ fn an_outline_and_its_image_are_filled_at_once() {
             "{kind}: as full as the first: {sides:?}"
         );
         assert!(new(&one, -1.0) < 10 && told.alone == 0, "{kind}: {told:?}");
-        // What is cut is what neither shows; a stem beside both stays.
+        // The parts cut are those within neither outline; a stem next to both stays.
         let (cut, _) = fill(&right, true, mirror);
         let borne = cut.nodes.position.iter().zip(&cut.nodes.axis);
         let borne = borne.filter(|(_, a)| cut.axis(**a).bearer.is_some()).map(|(q, _)| q);
@@ -754,7 +754,7 @@ fn an_outline_and_its_image_are_filled_at_once() {
 
 #[test]
 fn a_mirror_says_what_has_no_other_side() {
-    // Nothing on the left: what is drawn far out on the right stays alone.
+    // Nothing on the left: a branch drawn far out on the right stays alone.
     let whole = even();
     let bare = done(&whole, &[HandEdit::Prune { axis: path(&[0, 1]), at: 0.0 }]).plant;
     let mirror = Some(Mirror { point: DVec3::ZERO, normal: DVec3::X });
@@ -766,7 +766,7 @@ fn a_mirror_says_what_has_no_other_side() {
     let Outcome::Done(c) = a.outcomes[0] else { panic!("{}", a.outcomes[0]) };
     assert_eq!((c.added, c.alone), (1, 1));
     assert!(a.outcomes[0].to_string().contains("1 branch on one side only"), "{}", a.outcomes[0]);
-    // A wall on the left: the image ends before it.
+    // A wall on the left: the image ends in front of it.
     let at = DVec3::new(-1.5, 3.4, 0.0);
     let wall = growth::Obstacle::Box { min: at - DVec3::splat(0.6), max: at + DVec3::splat(0.6) };
     let obstacles = growth::Obstacles::new(&[wall], 0.0).expect("sound");

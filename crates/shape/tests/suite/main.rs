@@ -1,4 +1,5 @@
-//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-shape --test suite MODULE::`.
+//! Integration tests, linked as one program. To run one module of them: `cargo test -p burgeon-shape --test suite
+//! MODULE::`.
 
 mod edits;
 mod tools;

@@ -1,4 +1,4 @@
-//! Scripted gestures: what a hand does with each tool.
+//! Scripted gestures of a hand with each tool.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -10,7 +10,7 @@ use shape::{
     Pointer, Ray, Reach, Response, Shaping, Tool, ToolKind, ViewPlane, apply, pick,
 };
 
-/// A trunk of 4 m with a limb to the right at 2 m, which bears one of its own.
+/// Makes a trunk of 4 m with a limb to the right at 2 m, which bears one of its own.
 fn tree() -> Plant {
     let mut p = Plant::default();
     let line =
@@ -25,19 +25,19 @@ fn tree() -> Plant {
     p
 }
 
-/// A mouse at (x, y) of the plane z = 0, seen from a camera at z = 10.
+/// Makes a mouse at (x, y) of the plane z = 0, seen from a camera at z = 10.
 fn mouse(x: f64, y: f64) -> Pointer {
     let eye = DVec3::new(0.0, 2.0, 10.0);
     let ray = Ray { origin: eye, direction: DVec3::new(x, y, 0.0) - eye };
     Pointer { ray, forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None, hand: None }
 }
 
-/// A controller that points anywhere, its tip at a place in space.
+/// Makes a controller that points anywhere, with its tip at a place in space.
 fn controller(tip: DVec3) -> Pointer {
     Pointer { tip: Some(tip), ..mouse(tip.x, tip.y) }
 }
 
-/// Down at the first, over the others, up at the last.
+/// Presses at the first pointer, moves over the others and releases at the last.
 fn drag(tool: &mut Tool, plant: &Plant, way: &[Pointer]) -> Response {
     let mut previews = 0;
     tool.handle(plant, &Input::Down(way[0]));
@@ -64,12 +64,12 @@ fn picking_takes_what_is_nearest_with_a_tolerance_that_grows() {
     let plant = tree();
     let at = |x, y| pick(&plant, &mouse(x, y).ray, Reach::default()).map(|k| k.axis.index());
     assert_eq!((at(0.0, 1.0), at(1.6, 2.0), at(1.0, 2.6), at(-2.0, 1.0)), (Some(0), Some(1), Some(2), None));
-    // 0.15 m beside the trunk: within a degree at 10 m, not at 3.
+    // 0.15 m from the trunk: within a degree at 10 m, not at 3.
     let near = Ray { origin: DVec3::new(0.15, 1.0, 3.0), direction: DVec3::NEG_Z };
     let far = Ray { origin: DVec3::new(0.15, 1.0, 10.0), direction: DVec3::NEG_Z };
     let reach = Reach { metres: 0.0, per_metre: 0.02, bearers: 0 };
     assert!(pick(&plant, &near, reach).is_none() && pick(&plant, &far, reach).is_some());
-    // Or what bears it: at the place where it does, and no further than there is something.
+    // Or its bearer: at the place of the branch, and no further than there are bearers.
     let up = |bearers| {
         let reach = Reach { bearers, ..Reach::default() };
         pick(&plant, &mouse(1.0, 2.6).ray, reach).map(|k| (k.axis.index(), k.at))
@@ -135,7 +135,7 @@ fn a_branch_follows_a_controller_out_of_the_plane() {
         let wanted = base + (to - base).normalize() * 2.0;
         assert!(end.distance(wanted) < 1e-6, "{to}: {end}, not {wanted}");
     }
-    // A thumb turns it further about the view direction, by exactly so much.
+    // A thumb turns it further about the view direction, by exactly this angle.
     tool.handle(&plant, &Input::Down(controller(start)));
     let up = DVec3::new(0.0, 2.0, 1.6);
     tool.handle(&plant, &Input::Move(controller(up)));
@@ -149,7 +149,7 @@ fn a_branch_follows_a_controller_out_of_the_plane() {
     assert!(along.distance(DVec3::NEG_X) < 1e-6, "upwards before, to the left now: {along}");
 }
 
-/// A controller whose hand is turned by so many degrees about an axis.
+/// Makes a controller whose hand is turned by some degrees about an axis.
 fn turned(tip: DVec3, about: DVec3, degrees: f64) -> Pointer {
     Pointer { hand: Some(base::turn::about(about, degrees.to_radians())), ..controller(tip) }
 }
@@ -168,17 +168,17 @@ fn a_hand_that_turns_rolls_the_branch_that_it_holds() {
         let limb = after.axis_points(AxisId::new(1));
         ((limb[8] - base) / 2.0, (twig[8] - twig[0]).normalize())
     };
-    // In its place: the twig that stood upright lies towards the viewer.
+    // In place: the twig that stood upright lies towards the viewer.
     let (limb, twig) = ends(turned(start, DVec3::X, 0.0), turned(start, DVec3::X, 90.0));
     assert!(limb.distance(DVec3::X) < 1e-9 && twig.distance(DVec3::Z) < 1e-9, "{limb} {twig}");
-    // Position and orientation at once, from a hand that was turned when it took hold.
+    // Position and orientation together, from a hand that was turned when it took hold.
     let up = DVec3::new(0.0, 3.6, 0.0);
     let was = base::turn::about(DVec3::new(0.6, 0.0, 0.8), 1.1);
     let by = base::turn::about(DVec3::Y, 0.5) * base::turn::about(DVec3::Z, 90.0_f64.to_radians());
     let posed = |tip, hand| Pointer { hand: Some(hand), ..controller(tip) };
     let (limb, twig) = ends(posed(start, was), posed(up, by * was));
     assert!(limb.distance(DVec3::Y) < 1e-9 && twig.distance(by * DVec3::Y) < 1e-9, "{limb} {twig}");
-    // A hand that swings with its arm rolls nothing, and one that says nonsense is a tip alone.
+    // A hand that swings with its arm rolls nothing, and one with an invalid orientation is a tip alone.
     let plain = ends(controller(start), controller(up));
     let swung = ends(turned(start, DVec3::Z, 10.0), turned(up, DVec3::Z, 100.0));
     assert!(plain.0.distance(swung.0) < 1e-9 && plain.1.distance(swung.1) < 1e-9);
@@ -194,7 +194,7 @@ fn a_hand_that_pulls_takes_a_branch_to_other_wood() {
     let mut tool = Tool::new(ToolKind::Rotate);
     let straight = |tip| turned(tip, DVec3::Z, 0.0);
     tool.handle(&plant, &Input::Down(straight(start)));
-    // As far from its base as before, it turns; a third of its length further away, it comes off.
+    // At its old distance from its base, it turns; a third of its length further away, it comes off.
     for (to, host) in [
         (DVec3::new(1.7, 2.0, 0.0), None),
         (DVec3::new(-0.4, 1.2, 0.0), Some(0)),
@@ -206,7 +206,7 @@ fn a_hand_that_pulls_takes_a_branch_to_other_wood() {
         let moved = matches!(shown.preview, Some(HandEdit::Move { turn: Some(_), .. }));
         assert_eq!(moved, host.is_some(), "{to}");
     }
-    // Turned by a quarter on the way: it stands on the trunk as the hand has it, not at its old angle to its bearer.
+    // Turned by a quarter on the way: it stands on the trunk as the hand holds it, not at its old angle to its bearer.
     for (degrees, along) in [(0.0, DVec3::Y), (90.0, DVec3::NEG_X)] {
         let to = turned(DVec3::new(-0.9, 1.5, 0.2), DVec3::Z, degrees);
         tool.handle(&plant, &Input::Move(to));
@@ -220,7 +220,7 @@ fn a_hand_that_pulls_takes_a_branch_to_other_wood() {
         let was = plant.axis_points(AxisId::new(2));
         assert!(was.iter().zip(twig).all(|(p, q)| carried.place(*p).distance(*q) < 1e-9));
     }
-    // What stands on the ground stays there, however a hand pulls.
+    // A branch on the ground stays there, however a hand pulls.
     let foot = DVec3::new(0.0, 1.0, 0.0);
     let mut tool = Tool::new(ToolKind::Rotate);
     tool.handle(&plant, &Input::Down(straight(foot)));
@@ -231,7 +231,7 @@ fn a_hand_that_pulls_takes_a_branch_to_other_wood() {
 #[test]
 fn every_tool_works_at_the_tip_of_a_controller() {
     let plant = tree();
-    // In the air before the wood, pointing at it from a hand's breadth.
+    // In the air in front of the wood, pointing at it from a hand's breadth.
     let held = |tip: DVec3| Pointer {
         ray: Ray { origin: tip + DVec3::Z * 0.1, direction: DVec3::NEG_Z },
         ..controller(tip)
@@ -275,7 +275,7 @@ fn every_tool_works_at_the_tip_of_a_controller() {
         panic!("{thinned:?}")
     };
     assert_eq!(points, tips);
-    // A shoot grows from the branch that is touched, the way the hand points; on the ground, where it points.
+    // A shoot grows from the touched branch, in the direction of the hand; on the ground, from the point under the ray.
     let mut tool = Tool::new(ToolKind::Grow(Growth::default()));
     let shoot = tool.handle(&plant, &Input::Down(held(at))).preview;
     let Some(HandEdit::Grow { from: GrowFrom::Branch { at: share, .. }, towards, .. }) = shoot else {
@@ -332,7 +332,7 @@ fn a_branch_slides_along_its_bearer_and_a_stem_over_the_ground() {
 #[test]
 fn a_stem_follows_the_pointer_wherever_it_is_grabbed() {
     let plant = tree();
-    // From 6 m up and 10 m away; the same way on the screen, from the foot and from high up.
+    // From 6 m up and 10 m away; the same path on the screen, from the foot and from high up.
     let eye = DVec3::new(0.0, 6.0, 10.0);
     let at = |p: DVec3| Pointer {
         ray: Ray { origin: eye, direction: p - eye },
@@ -350,7 +350,7 @@ fn a_stem_follows_the_pointer_wherever_it_is_grabbed() {
     let along = moved(high, high + DVec3::X);
     // A metre across at 11 m from the eye is 1.02 m across at the foot; before, it was 1.3 m.
     assert!((along.x - 1.0).abs() < 0.1 && along.z.abs() < 0.2, "{along}");
-    // Beyond the horizon it stays where it was last seen over the ground.
+    // Beyond the horizon it stays at its last place over the ground.
     let near = high + DVec3::X;
     let way = [at(high), at(near), at(DVec3::new(0.0, 30.0, -10.0))];
     let up = drag(&mut Tool::new(ToolKind::Move), &plant, &way).commit;
@@ -408,7 +408,7 @@ fn a_branch_is_drawn_on_a_plane_that_faces_the_viewer_or_leans() {
     let leaning = draw(35.0);
     let depth = leaning.last().map_or(0.0, |p| p.z);
     assert!(depth < -0.3, "up on the screen goes away from the viewer: {depth}");
-    // Leaning the plane while drawing leaves what is drawn where it is.
+    // Tilting the plane while drawing leaves the drawn part in place.
     let mut tool = Tool::new(ToolKind::Sketch { twigs: 0.0, tilt_deg: 0.0 });
     tool.handle(&plant, &Input::Down(way[0]));
     way[1..6].iter().for_each(|p| drop(tool.handle(&plant, &Input::Move(*p))));
@@ -501,7 +501,7 @@ fn leaves_are_brushed_and_hovering_picks() {
     let mut tool = Tool::new(ToolKind::Rotate);
     let over = tool.handle(&plant, &Input::Move(mouse(1.6, 2.0)));
     assert_eq!((over.picked.map(|k| k.axis.index()), over.preview, tool.is_busy()), (Some(1), None, false));
-    assert!(matches!(AxisKey::of(&plant, AxisId::new(1)), Some(AxisKey::Mark(_))));
+    assert!(matches!(AxisKey::for_axis(&plant, AxisId::new(1)), Some(AxisKey::Mark(_))));
 }
 
 #[test]
@@ -553,7 +553,7 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
     let plant = tree();
     let mut tool = Tool::new(ToolKind::Grow(Growth::default()));
     let wood = |p: &Plant| p.axes.len();
-    // On the limb, then on the ground beside the tree.
+    // On the limb, then on the ground next to the tree.
     for (at, said) in [(mouse(1.5, 2.0), 2), (mouse(3.0, -0.6), 1)] {
         let first = tool.handle(&plant, &Input::Down(at)).preview.expect("it grows at once");
         assert!(matches!(first, HandEdit::Grow { rounds: 1, .. }));
@@ -574,11 +574,11 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
         let edit = tool.handle(&plant, &Input::Up(at)).commit.expect("kept");
         edit.check().expect("sound");
         let HandEdit::Grow { rounds, changes, .. } = &edit else { panic!("{edit:?}") };
-        // The tool keeps the numbers that it was set to.
+        // The tool keeps the settings that it was given.
         assert_eq!((*rounds, changes.len()), (13, said));
         assert_eq!(changes[said - 1].round, if said == 2 { 7 } else { 0 });
         assert_eq!(changes[said - 1].branch_angle_deg, Some(85.0));
-        // The record is the edit: read back, it is the same tree.
+        // The record is the edit: read back, it gives the same tree.
         let text = serde_json::to_string(&edit).expect("JSON");
         let again: HandEdit = serde_json::from_str(&text).expect("read back");
         assert_eq!(after(&plant, again), after(&plant, edit));
@@ -591,7 +591,7 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
     assert!(tool.handle(&plant, &Input::Down(up)).preview.is_none() && !tool.is_busy());
 }
 
-/// Counts what it is asked to run: two jobs a round of growth.
+/// Counts the jobs that it is asked to run: two for each round of growth.
 #[derive(Default)]
 struct Counting(AtomicUsize);
 
@@ -631,10 +631,10 @@ fn what_is_held_grows_on_from_where_it_is() {
             most = if round > 2 { most.max(jobs) } else { most };
         }
         assert!(most < 20, "a round is one round of growth: {most}");
-        // The edit that is kept is the preview that was seen last: nothing grows anew.
+        // The edit that is kept is the last preview: nothing grows anew.
         let edit = tool.handle(&plant, &Input::Up(down)).commit.expect("kept");
         assert!(push(&edit).0 < most);
-        // What was held on to for a shorter time, and what grows elsewhere, begins anew.
+        // A shoot held for a shorter time, and one that grows elsewhere, begins anew.
         let HandEdit::Grow { from, towards, changes, seed, mirror, .. } = edit.clone() else { panic!() };
         let early = changes.into_iter().filter(|c| c.round < 5).collect::<Vec<_>>();
         let short = |seed, from: GrowFrom| HandEdit::Grow {
@@ -649,7 +649,7 @@ fn what_is_held_grows_on_from_where_it_is() {
         push(&short(seed + 1, from));
         push(&edit);
     }
-    // Another edit lets go of it.
+    // Another edit drops it.
     let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0, 0]), at: 0.0 };
     assert_eq!(push(&cut).1, 0);
 }
@@ -677,7 +677,7 @@ fn what_is_carried_is_where_the_edit_puts_it() {
         let moved = after(&plant, edit);
         let borne = plant.borne_by(carried.axis);
         for (row, borne) in borne.iter().enumerate().filter(|(row, _)| *row != carried.axis.index()) {
-            // A new node on what bears the branch is no matter here: it is not borne.
+            // A new node on the bearer does not matter here: it is not borne by the branch.
             let (was, now) = (plant.axis_points(AxisId::new(row)), moved.axis_points(AxisId::new(row)));
             for (p, q) in was.iter().zip(now).filter(|_| *borne) {
                 assert!(carried.place(*p).distance(*q) < 1e-9, "{kind:?} {p} {q}");
@@ -696,7 +696,7 @@ fn what_is_carried_is_where_the_edit_puts_it() {
 #[test]
 fn an_outline_is_drawn_on_the_plane_that_was_placed() {
     let plant = tree();
-    // Beside the plant, leaning back, turned a third of the way round; a tip that shakes before and behind it.
+    // Next to the plant, tilted back, turned a third of the way round; a tip that shakes in front of and behind it.
     let towards = DVec3::new(0.8, 0.3, 0.5);
     let plane = ViewPlane::facing(DVec3::new(0.3, 3.2, 0.1), towards, DVec3::Y).expect("a direction");
     let [right, up, normal] = plane.axes().expect("orthonormal");
@@ -728,7 +728,8 @@ fn an_outline_is_drawn_on_the_plane_that_was_placed() {
         });
         assert!(tips.len() > 10 && outside.count() * 20 < tips.len(), "{} tips", tips.len());
     }
-    // What a hand that points along the vertical places is upright somehow, and no direction is no plane.
+    // A plane placed by a hand that points along the vertical has some upright direction, and no direction gives no
+    // plane.
     let flat = ViewPlane::facing(DVec3::ZERO, DVec3::Y, DVec3::Y).expect("a direction");
     assert!(flat.axes().is_ok());
     for (point, towards) in [(DVec3::NAN, DVec3::X), (DVec3::ZERO, DVec3::ZERO), (DVec3::ZERO, DVec3::NAN)] {
@@ -745,7 +746,7 @@ fn what_is_held_on_to_for_long_stops_growing_and_stays() {
     for _ in 0..60 {
         edit = tool.handle(&plant, &Input::Round).preview;
     }
-    // The budget of a browser: over it, there would be nothing.
+    // The budget of a browser: over it, nothing would grow.
     let run = Run { budget: Budget { times: 0.25, ..Budget::default() }, ..Run::plain() };
     let (mut shaping, mut kept) = (Shaping::new(&plant), KeptGrowth::default());
     let edit = edit.expect("it grows");
@@ -775,7 +776,7 @@ fn a_copy_is_dropped_on_the_wood_that_is_meant_and_the_branch_stays() {
     let way = [mouse(1.0, 2.6), mouse(0.5, 2.5), mouse(0.0, 3.0)];
     let (bearer, at) = host_of_copy(drag(&mut tool, &plant, &way).commit.expect("copied"));
     assert!(bearer == 0 && at.distance(DVec3::Y * 3.0) < 0.1, "{bearer} {at}");
-    // A click, or a hand that hardly moved, copies nothing; nothing is carried in place of the branch.
+    // A click, or a hand that hardly moved, copies nothing; nothing is moved instead of the branch.
     assert!(drag(&mut tool, &plant, &[mouse(1.0, 2.6), mouse(1.0, 2.6)]).commit.is_none());
     let near = [twig, twig + DVec3::X * 0.01].map(controller);
     assert!(drag(&mut tool, &plant, &near).commit.is_none());

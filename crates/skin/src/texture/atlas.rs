@@ -16,18 +16,18 @@ use crate::natural::VeinPattern;
 use crate::needles::Cut;
 use crate::shoots::{Shoots, Tile, chart_place, columns};
 
-/// What an atlas shows.
+/// Contents of an atlas.
 pub(crate) struct Leafage<'a> {
     pub(crate) venation: VeinPattern,
     pub(crate) leaf: &'a Blade,
     pub(crate) shoots: Option<&'a Shoots>,
     pub(crate) inks: &'a LeafInks,
-    /// sRGB, of the wood of shoots.
+    /// sRGB colour of the wood of shoots.
     pub(crate) wood: Paint,
 }
 
-/// The atlas with cells of `size` pixels a side: the leaf, then the shoots. Where nothing is, alpha is 0 and the colour that of
-/// leaves, so that coarser copies have no seams.
+/// Paints the atlas with cells of `size` pixels a side: the leaf, then the shoots. In empty places alpha is 0 and the
+/// colour that of leaves, so that coarser copies have no seams.
 pub(crate) fn atlas(what: &Leafage<'_>, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
     let mut content = Digest::new();
     content.add("atlas").add(&(what.venation as u32)).add(&size);
@@ -53,10 +53,11 @@ pub(crate) fn atlas(what: &Leafage<'_>, size: u32, run: &Run<'_>) -> Result<Surf
     })
 }
 
-/// Below the one half at which holes are cut: where needles cover 43 % and more, coarser copies are closed.
+/// Alpha between needles, below the one half at which holes are cut: where needles cover 43 % and more, coarser copies
+/// are closed.
 const GAP: f64 = 0.12;
 
-/// What one place of a cell shows.
+/// Contents of one place of a cell.
 struct Seen {
     spot: Spot,
     tilt: DVec2,
@@ -84,7 +85,7 @@ impl<'a> Cell<'a> {
         Self { what, plan, cut, tile, chart, extent: DVec2::new(extent.max(1e-9), high.max(1e-9)), scale }
     }
 
-    fn at(&self, u: f64, v: f64) -> Seen {
+    fn seen_at(&self, u: f64, v: f64) -> Seen {
         let uv = chart_place(DVec2::new(u, v));
         let inside = uv.x > 0.0 && uv.x < 1.0 && uv.y > 0.0 && uv.y < 1.0;
         let p = self.chart.place(uv);
@@ -117,14 +118,14 @@ impl<'a> Cell<'a> {
         seen
     }
 
-    /// The leaf at a place of its plane, and of its chart.
+    /// Returns the leaf at a point of its plane, and of its chart.
     fn leaf_spot(&self, p: DVec2, uv: DVec2) -> Spot {
         let inks = self.what.inks;
         let Some(needles) = &self.cut.needles else { return self.plan.spot(inks, uv.x, uv.y) };
-        match needles.at(p) {
+        match needles.seen_at(p) {
             Some(SeenNeedle::Wood) => Spot { height: 0.35, paint: self.what.wood, rough: 0.95, through: 0.0 },
             Some(SeenNeedle::Needle { across, along, shade: own }) => {
-                // Round, with a pale line on each side of the keel; light towards its tip, which the sun sees.
+                // Round, with a pale line on each side of the keel; light towards its tip, which is in the sun.
                 let round = (1.0 - across * across).max(0.0).sqrt();
                 let paint = mix(inks.dark, inks.light, 0.15 + 0.45 * own + 0.35 * along);
                 let paint = shade(paint, 0.72 + 0.28 * along.max(round));
@@ -134,8 +135,8 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Alpha of what is no leaf: a little between needles, so that coarser copies of the texture, in which each pixel is
-    /// the mean of many, close there and do not lose the needles.
+    /// Returns the alpha of places without leaf: low but not 0 between needles, so that coarser copies of the texture,
+    /// in which each pixel is the mean of many, are closed there and do not lose the needles.
     fn gap(&self, u: f64, v: f64) -> f64 {
         let p = self.chart.place(chart_place(DVec2::new(u, v)));
         let between = match self.tile {
@@ -153,7 +154,7 @@ impl<'a> Cell<'a> {
             tiles: false,
             mean: None,
         };
-        let Surface { color, maps } = surface(run, &sheet, true, &|u, v| self.at(u, v).spot)?;
+        let Surface { color, maps } = surface(run, &sheet, true, &|u, v| self.seen_at(u, v).spot)?;
         let pixel = 1.0 / f64::from(size);
         let rows = map_until_cancelled(run, size as usize, |j| {
             let v = j as f64 * pixel;
@@ -161,12 +162,13 @@ impl<'a> Cell<'a> {
             for i in 0..size {
                 let u = f64::from(i) * pixel;
                 // Five samples a pixel, so that none is half covered.
-                let part =
-                    |du: f64, dv: f64| f64::from(u8::from(self.at(u + du * pixel, v + dv * pixel).covered));
+                let part = |du: f64, dv: f64| {
+                    f64::from(u8::from(self.seen_at(u + du * pixel, v + dv * pixel).covered))
+                };
                 let around = part(0.3, 0.1) + part(0.9, 0.3) + part(0.1, 0.7) + part(0.7, 0.9);
                 let alpha = 0.2 * (around + part(0.5, 0.5));
                 let alpha = alpha.max(self.gap(u + 0.5 * pixel, v + 0.5 * pixel));
-                row.push((byte(alpha), self.at(u + 0.5 * pixel, v + 0.5 * pixel).tilt));
+                row.push((byte(alpha), self.seen_at(u + 0.5 * pixel, v + 0.5 * pixel).tilt));
             }
             row
         })?;
@@ -197,7 +199,7 @@ fn lean(rgb: &mut [u8], tilt: DVec2) {
     rgb.copy_from_slice(&[x, y, z].map(|n| byte(0.5 + 0.5 * n / length)));
 }
 
-/// Cells beside and below one another.
+/// Joins cells into a grid.
 fn joined(cells: &[Surface], size: u32) -> Surface {
     let columns = u32::try_from(columns(cells.len())).unwrap_or(1);
     let join = |of: &dyn Fn(&Surface) -> Option<Arc<Texture>>| {

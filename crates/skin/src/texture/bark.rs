@@ -1,5 +1,5 @@
-//! Bark: a relief with its colours, which repeats in both directions; v runs up the trunk. A tile is a third of the way
-//! around the thickest branch.
+//! Bark: a relief with its colours, which repeats in both directions; v runs up the trunk. A tile is a third of the
+//! circumference of the thickest branch.
 
 use base::{Cancelled, Digest, Run, ops};
 
@@ -8,7 +8,7 @@ use super::relief::{Sheet, Spot, Surface, surface};
 use super::{Paint, mix, shade};
 use crate::natural::BarkKind;
 
-/// A bark and its colour on the whole (sRGB, 0 to 1); of birch that of its white.
+/// Paints a bark with its mean colour (sRGB, 0 to 1); for birch that of its white.
 ///
 /// `size` pixels square, 64 to 4096. Painted once for each content.
 pub(crate) fn bark(kind: BarkKind, colour: Paint, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
@@ -32,7 +32,7 @@ pub(crate) fn bark(kind: BarkKind, colour: Paint, size: u32, run: &Run<'_>) -> R
     })
 }
 
-/// Gradient noise that repeats `n` times over the tile, about -1 to 1.
+/// Evaluates gradient noise that repeats `n` times over the tile, about -1 to 1.
 fn noise(u: f64, v: f64, n: (i32, i32), salt: u32) -> f64 {
     gradient(u * f64::from(n.0), v * f64::from(n.1), n, salt)
 }
@@ -45,19 +45,19 @@ fn grey_of(c: Paint) -> f64 {
     0.3 * c[0] + 0.6 * c[1] + 0.1 * c[2]
 }
 
-/// The colour with less hue, lighter or darker: weathered cork.
+/// Returns the colour with less hue, lighter or darker: weathered cork.
 fn weathered(c: Paint, hue: f64, light: f64) -> Paint {
     shade(mix([grey_of(c); 3], c, hue), light)
 }
 
-/// Lichen: a dusting in patches on what stands out.
+/// Adds lichen: a dusting in patches on raised parts.
 fn lichen(c: Paint, u: f64, v: f64, height: f64, much: f64) -> Paint {
     let patch = noise(u, v, (3, 3), 61) + 0.5 * noise(u, v, (9, 9), 62) + 0.35 * noise(u, v, (34, 34), 63);
     let share = ops::smoothstep(0.45, 0.95, patch + 0.35 * (height - 0.7)) * much;
     mix(c, [0.58, 0.60, 0.52], share)
 }
 
-/// Long ridges that part and meet, of fibres, with cracks across; grey on their crests, brown in the furrows.
+/// Paints long ridges that part and meet, of fibres, with cross cracks; grey on their crests, brown in the furrows.
 fn furrowed(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
     let ridges = Plates::new((13, 4), 0.75, 11);
     let blocks = Plates::new((26, 14), 0.9, 12);
@@ -65,16 +65,16 @@ fn furrowed(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
         let sway = 0.9 * noise(u, v, (3, 2), 1) + 0.45 * noise(u, v, (8, 5), 2);
         let jag = rough(u, v, (30, 18), 3, 2);
         let (x, y) = (u + 0.024 * sway + 0.009 * jag, v + 0.03 * noise(u, v, (7, 5), 4));
-        let ridge = ridges.at(x, y);
-        // Some neighbours have grown together: the furrow between them is only a dent.
-        // So have most that meet end to end: furrows run up the trunk.
+        let ridge = ridges.plate_at(x, y);
+        // Some neighbours have grown together: the furrow between them is only a dent. So have most that meet end to
+        // end: furrows run up the trunk.
         let joined = ops::smoothstep(0.20, 0.34, ridge.border) * ops::smoothstep(0.62, 0.97, ridge.upright);
         let width = 0.0115 * (1.0 + 0.60 * noise(u, v, (5, 3), 5)) * (0.25 + 0.75 * joined);
         let wall = ops::smoothstep(0.0, 2.4 * width, ridge.edge);
         let crest = ops::smoothstep(0.0, 0.034, ridge.edge);
         let deep = (1.0 - wall) * (0.22 + 0.78 * joined);
         // Cracks break a ridge into blocks; most run across it.
-        let block = blocks.at(x + 0.01 * jag, y + 0.012 * sway + 0.01 * jag);
+        let block = blocks.plate_at(x + 0.01 * jag, y + 0.012 * sway + 0.01 * jag);
         let alive = ops::smoothstep(0.56, 0.72, block.border);
         let crack = alive * (1.0 - ops::smoothstep(0.0, 0.0068, block.edge)) * (0.3 + 0.7 * crest);
         let fibre = rough(u + 0.02 * sway, v, (44, 7), 6, 3);
@@ -93,7 +93,7 @@ fn furrowed(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
     }
 }
 
-/// Plates, each a pile of thin scales that ends in ragged steps; furrows between, some of which have closed.
+/// Paints plates, each a pile of thin scales that ends in ragged steps; furrows between, some of which have closed.
 fn plated(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
     let plates = Plates::new((9, 4), 0.85, 21);
     let parts = Plates::new((13, 14), 0.95, 22);
@@ -104,11 +104,11 @@ fn plated(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
         );
         let ragged = rough(u, v, (26, 20), 5, 3);
         let (x, y) = (u + 0.040 * sway.0 + 0.016 * ragged, v + 0.035 * sway.1 + 0.010 * ragged);
-        let plate = plates.at(x, y);
+        let plate = plates.plate_at(x, y);
         let open = ops::smoothstep(0.16, 0.42, plate.border + 0.25 * noise(u, v, (7, 5), 6));
         let width = 0.015 * (1.0 + 0.6 * noise(u, v, (4, 3), 7)) * (0.18 + 0.82 * open);
         let wall = ops::smoothstep(0.15 * width, 1.6 * width, plate.edge);
-        let part = parts.at(x, y);
+        let part = parts.plate_at(x, y);
         let alive = ops::smoothstep(0.66, 0.78, part.border) * open;
         let split = alive * (1.0 - ops::smoothstep(0.0, 0.006, part.edge));
         // Scales end in steps along the edge of their plate, and some have fallen from its middle.
@@ -123,7 +123,7 @@ fn plated(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
         let top = 0.36 + 0.14 * step + 0.05 * broad + 0.05 * fibre;
         let floor = 0.10 + 0.10 * grain + 0.08 * fibre;
         let height = top * wall + floor * (1.0 - wall) - 0.10 * split + 0.05 * grain;
-        // What has stood long is grey; what a scale has left is fresh and red.
+        // Old bark is grey; bark under a lost scale is fresh and red.
         let fresh = (0.34 - 0.20 * (step - 1.5) + 0.60 * broad + 0.35 * (part.own - 0.5)).clamp(0.0, 1.0);
         let tone = 1.0 + 0.14 * (part.own - 0.5) + 0.16 * (plate.own - 0.5) + 0.22 * grain + 0.10 * fibre;
         let old = weathered(colour, 0.42, 1.06 * tone);
@@ -137,7 +137,7 @@ fn plated(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
     }
 }
 
-/// Closed bark with fine wrinkles, eyes of lost branches, and pale crusts.
+/// Paints closed bark with fine wrinkles, eyes of lost branches, and pale crusts.
 fn smooth(colour: Paint, u: f64, v: f64) -> Spot {
     let bend = 0.01 * noise(u, v, (4, 4), 1);
     let wrinkle = rough(u, v + bend, (7, 46), 2, 2);
@@ -159,7 +159,7 @@ fn smooth(colour: Paint, u: f64, v: f64) -> Spot {
     Spot { height, paint, rough: 0.78 + 0.08 * pale, through: 0.0 }
 }
 
-/// White paper: lenticels across, sheets that come off across and show the young bark, rhombs of old black cork.
+/// Paints white paper: lenticels across, sheets that peel across and show the young bark, rhombs of old black cork.
 fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     const DARK: Paint = [0.165, 0.145, 0.13];
     const FRESH: Paint = [0.86, 0.70, 0.56];
@@ -170,14 +170,14 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     });
     let fine = strokes((14.0 * u, 90.0 * y), (14, 90), 4, |n| (n < 0.30).then_some((0.10 + 1.2 * n, 0.22)));
     let pore = (1.0 - ops::smoothstep(0.55, 1.0, pore)).max(0.55 * (1.0 - ops::smoothstep(0.4, 1.0, fine)));
-    // Sheets: bands whose lower edge is torn; below it the paper has gone for a while.
+    // Sheets: bands whose lower edge is torn; below it the paper is missing for some distance.
     let torn = 0.35 * noise(u, v, (6, 5), 5) + 0.16 * rough(u, v, (22, 12), 6, 3);
     let band = 5.0 * v + torn;
     let phase = band - band.floor();
     let alive = ops::smoothstep(0.05, 0.30, noise(u, v, (4, 5), 7));
     let gone = alive * ops::smoothstep(0.0, 0.02, phase) * (1.0 - ops::smoothstep(0.16, 0.30, phase));
     let lip = alive * (1.0 - ops::smoothstep(0.0, 0.05, 1.0 - phase));
-    // Rhombs, wider than high, of cork that is cracked along.
+    // Rhombs, wider than high, of cork that is cracked lengthwise.
     let ragged = rough(u, v, (16, 14), 8, 3);
     let rhomb = rhombs(u, v, 0.42 * ragged);
     let crack = 1.0 - ops::smoothstep(0.0, 0.28, noise(u + 0.02 * ragged, v, (22, 7), 9).abs());
@@ -197,7 +197,7 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     Spot { height, paint, rough: 0.62 + 0.32 * cork + 0.10 * gone, through: 0.0 }
 }
 
-/// How far inside a rhomb of cork a place is, below 0 outside.
+/// Returns how far inside a rhomb of cork a place is, below 0 outside.
 fn rhombs(u: f64, v: f64, ragged: f64) -> f64 {
     // (u, v, half width, half height); a branch's scar has a chevron over it.
     const AT: [(f64, f64, f64, f64); 5] = [
@@ -214,7 +214,7 @@ fn rhombs(u: f64, v: f64, ragged: f64) -> f64 {
     AT.iter().map(inside).fold(f64::MIN, f64::max)
 }
 
-/// Glossy bands: raised corky lenticels across, and strips that curl away.
+/// Paints glossy bands: raised corky lenticels across, and strips that curl away.
 fn cherry(colour: Paint, u: f64, v: f64) -> Spot {
     let wave = 0.008 * noise(u, v, (3, 3), 1) + 0.004 * noise(u, v, (10, 8), 2);
     let y = v + wave;
@@ -245,7 +245,7 @@ fn cherry(colour: Paint, u: f64, v: f64) -> Spot {
     Spot { height, paint, rough: 0.46 + 0.44 * cork + 0.15 * gone, through: 0.0 }
 }
 
-/// Scars of leaves: rings with a lip, cracked along, fibres between.
+/// Paints scars of leaves: rings with a lip, cracked lengthwise, fibres between.
 fn ringed(colour: Paint, u: f64, v: f64) -> Spot {
     let y = 6.0 * v
         + 0.20 * noise(u, v, (3, 6), 1)
@@ -268,7 +268,7 @@ fn ringed(colour: Paint, u: f64, v: f64) -> Spot {
     Spot { height, paint: lichen(paint, u, v, height, 0.25), rough: 0.9, through: 0.0 }
 }
 
-/// One joint for each turn of the tile: a pale ring of wax below a raised edge.
+/// Paints one joint for each turn of the tile: a pale ring of wax below a raised edge.
 fn cane(colour: Paint, u: f64, v: f64) -> Spot {
     let gloss = rough(u, v, (30, 2), 1, 2);
     let mottle = rough(u, v, (4, 3), 2, 3);
@@ -283,7 +283,7 @@ fn cane(colour: Paint, u: f64, v: f64) -> Spot {
     Spot { height, paint, rough: 0.38 + 0.25 * wax, through: 0.0 }
 }
 
-/// Four ribs, light on their crests, each with a row of grey felt from which spines spread.
+/// Paints four ribs, light on their crests, each with a row of grey felt from which spines spread.
 fn ribbed(colour: Paint, u: f64, v: f64) -> Spot {
     const FELT: Paint = [0.72, 0.67, 0.56];
     const ROWS: f64 = 8.0;
@@ -313,7 +313,7 @@ fn ribbed(colour: Paint, u: f64, v: f64) -> Spot {
     }
 }
 
-/// Fine wrinkles along it, lenticels, and thin skin that comes off in places.
+/// Paints fine lengthwise wrinkles, lenticels, and thin skin that peels in places.
 fn twig(colour: Paint, u: f64, v: f64) -> Spot {
     let sway = 0.03 * noise(u, v, (3, 3), 1);
     let wrinkle = rough(u + sway, v, (12, 3), 2, 3);
@@ -364,7 +364,7 @@ mod tests {
                 let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
                 assert!((length - 1.0).abs() < 0.02 && n[2] > 0.0, "{kind:?}: {n:?}");
             }
-            // The relief is no plane, and its normals do not lean on the whole.
+            // The relief is not plane, and its normals do not lean on average.
             assert!(mean(normal, 0).abs_diff(128) < 3 && mean(normal, 1).abs_diff(128) < 3, "{kind:?}");
             let level = |p: &&[u8]| p[0].abs_diff(128) < 2 && p[1].abs_diff(128) < 2;
             let flat = normal.pixels.chunks_exact(4).filter(level).count();

@@ -20,11 +20,11 @@ pub(crate) const PALE_GREEN: LeafInks =
 // Side veins on each side of the midrib.
 const SIDE_VEINS: f64 = 9.0;
 
-/// A mottled leaf with midrib and pinnate side veins that arch towards the tip.
+/// Paints a mottled leaf with midrib and pinnate side veins that arch towards the tip.
 pub(super) fn leaf(inks: &LeafInks, u: f64, v: f64) -> Paint {
     let (x, y) = (2.0 * u - 1.0, 1.0 - v);
     let across = x.abs();
-    // Where the side vein through this point leaves the midrib. Right and left are half a step apart.
+    // Start on the midrib of the side vein through this point. Right and left are offset by half a step.
     let wobble = 0.012 * gradient(5.0 * u, 7.0 * v, (5, 7), 1);
     let start = y - 0.26 * across - 0.13 * across * across + wobble;
     let phase = start * SIDE_VEINS + if x > 0.0 { 0.5 } else { 0.0 };
@@ -36,7 +36,7 @@ pub(super) fn leaf(inks: &LeafInks, u: f64, v: f64) -> Paint {
     let fade = 1.0 - 0.65 * across;
     let side = alive * fade * line(off, 0.085 * (1.15 - 0.7 * across));
     let midrib = line(x, 0.060 * (1.08 - 0.85 * y));
-    // The finest net, hardly seen.
+    // The finest net, hardly visible.
     let net = 1.0 - ops::smoothstep(0.0, 0.14, gradient(22.0 * u, 34.0 * v, (22, 34), 2).abs());
     // The lamina swells between veins: lighter in the middle, dark along them.
     let swell = 0.5 - 0.5 * ops::cos(ops::TAU * off.min(0.5));
@@ -62,7 +62,7 @@ pub(crate) const PALE_PETAL: PetalInks = PetalInks {
     vein: [0.76, 0.76, 0.76],
 };
 
-/// The palette of a petal colour.
+/// Returns the palette of a petal colour.
 pub(crate) const fn inks(color: PetalColor) -> PetalInks {
     let (root, middle, tip, vein) = match color {
         PetalColor::Pink => ([0.97, 0.90, 0.84], [0.95, 0.70, 0.75], [0.90, 0.45, 0.58], [0.78, 0.28, 0.46]),
@@ -86,31 +86,31 @@ pub(crate) const fn inks(color: PetalColor) -> PetalInks {
 }
 
 impl PetalInks {
-    /// All of them.
+    /// Returns all of them.
     pub(super) const fn each(&self) -> [Paint; 4] {
         [self.root, self.middle, self.tip, self.vein]
     }
 }
 
-/// A petal whose colour deepens towards the tip, with fine veins that fan out from its root; also how much of a vein there
-/// is, 0 to 1.
+/// Paints a petal whose colour deepens towards the tip, with fine veins that fan out from its root; also returns the
+/// strength of a vein, 0 to 1.
 pub(super) fn petal(inks: &PetalInks, u: f64, v: f64) -> (Paint, f64) {
     let (x, y) = (2.0 * u - 1.0, 1.0 - v);
     let mottle = octaves(4.0 * u, 6.0 * v, (4, 6), 3, 3);
     let along = y + 0.10 * mottle;
     let body = mix(inks.root, inks.middle, ops::smoothstep(0.02, 0.42, along));
     let body = mix(body, inks.tip, ops::smoothstep(0.35, 1.0, along));
-    // Lines of equal fan are the veins; they waver and fork a little further out.
+    // Veins are lines of equal fan; they waver and fork slightly further out.
     let fan = x / (0.30 + 0.85 * y) + 0.018 * gradient(6.0 * u, 5.0 * v, (6, 5), 4);
     let vein = |n: f64, width: f64| {
         let phase = fan * n;
         line(phase - phase.round(), width)
     };
-    // No more than the texture's pixels can show: four to a line at its finest.
+    // At most the resolution of the texture: four pixels per line at its finest.
     let coarse = vein(5.0, 0.22) * ops::smoothstep(0.03, 0.15, y) * (1.0 - ops::smoothstep(0.55, 0.98, y));
     let fine = vein(13.0, 0.42) * ops::smoothstep(0.25, 0.6, y) * (1.0 - ops::smoothstep(0.75, 1.0, y));
     let veined = mix(body, inks.vein, 0.34 * coarse + 0.14 * fine);
-    // Matter is thicker, so deeper in colour, along the middle of the lower half.
+    // The petal is thicker, and so deeper in colour, along the middle of the lower half.
     let keel = line(x, 0.35) * (1.0 - y);
     (shade(mix(veined, inks.vein, 0.10 * keel), 1.0 + 0.05 * mottle), coarse.max(0.5 * fine))
 }

@@ -26,22 +26,22 @@ pub(super) const PALE_DISC: DiscInks = DiscInks {
     gap: [0.50, 0.47, 0.45],
 };
 
-// The green of the receptacle below a disc; it fills the corners that the round disc leaves free.
+// The green of the receptacle below a disc; it fills the corners outside the round disc.
 const RECEPTACLE: Paint = [0.36, 0.49, 0.20];
 /// Radius of the disc in its texture: the corners beyond are the receptacle's.
 pub(crate) const DISC_RADIUS: f64 = 0.47;
 /// A place in the texture that shows the receptacle.
 pub(crate) const RECEPTACLE_AT: (f64, f64) = (0.035, 0.035);
-/// Florets of a disc, by Vogel's rule (radius c sqrt(n), angle n x 137.508 degrees).
+/// Number of florets of a disc, by Vogel's rule (radius c sqrt(n), angle n x 137.508 degrees).
 const FLORETS: u32 = 233;
 
-/// Where floret `n` sits: polar radius (0 to 1) and angle.
+/// Returns the position of floret `n`: polar radius (0 to 1) and angle.
 fn floret(n: u32) -> (f64, f64) {
     const GOLDEN: f64 = 2.399_963_229_728_653;
     (((f64::from(n) + 0.5) / f64::from(FLORETS)).sqrt(), f64::from(n) * GOLDEN)
 }
 
-/// Florets in spirals, opening from the rim inwards.
+/// Paints florets in spirals, opening from the rim inwards.
 pub(super) fn disc(executor: &dyn Executor, size: u32, inks: &DiscInks) -> Texture {
     let ground = canvas(executor, size, size, &|u, v| {
         let r = ops::hypot(u - 0.5, v - 0.5) / DISC_RADIUS;
@@ -49,7 +49,7 @@ pub(super) fn disc(executor: &dyn Executor, size: u32, inks: &DiscInks) -> Textu
     });
     let mut texture = ground;
     let pixels = f64::from(size);
-    // Half the distance between neighbours in a Vogel lattice, a little overlapping.
+    // Half the distance between neighbours in a Vogel lattice, slightly overlapping.
     let radius = 1.05 * DISC_RADIUS / f64::from(FLORETS).sqrt();
     for n in 0..FLORETS {
         let (r, angle) = floret(n);
@@ -92,7 +92,7 @@ pub(super) const RED_FRUIT: FruitInks =
 pub(super) const PALE_FRUIT: FruitInks =
     FruitInks { sun: [0.93, 0.93, 0.93], shadow: [1.0, 1.0, 0.96], dot: [1.0, 1.0, 1.0] };
 
-/// Fruit skin: u around, v from the upper pole (0) to the lower one (1).
+/// Paints fruit skin: u around, v from the upper pole (0) to the lower one (1).
 pub(super) fn fruit(inks: &FruitInks, u: f64, v: f64) -> Paint {
     let patch = octaves(3.0 * u, 2.0 * v, (3, 2), 1, 3);
     let streak = gradient(26.0 * u, 2.0 * v, (26, 2), 2);
@@ -104,19 +104,19 @@ pub(super) fn fruit(inks: &FruitInks, u: f64, v: f64) -> Paint {
     mix(skin, inks.dot, 0.5 * line(near, 0.10))
 }
 
-/// Skin of a fruit with eyes in spirals both ways, as a pineapple's: u around, v from its tip (0) to its tuft (1), where it is
-/// greener.
+/// Paints skin of a fruit with eyes in spirals in both directions, as in pineapple: u around, v from its tip (0) to its
+/// tuft (1), where it is greener.
 pub(super) fn eyes(u: f64, v: f64) -> Paint {
     const GOLD: Paint = [0.83, 0.56, 0.16];
     const GREEN: Paint = [0.48, 0.48, 0.18];
     const GROOVE: Paint = [0.36, 0.25, 0.10];
     const SPINE: Paint = [0.30, 0.20, 0.10];
-    // As many spirals one way as the other, so that eyes are diamonds: a little wider than high on a body a half longer
-    // than wide.
+    // Equal numbers of spirals in both directions, so that eyes are diamonds: slightly wider than high on a body half
+    // again as long as wide.
     const AROUND: f64 = 11.0;
     const ALONG: f64 = 6.0;
     let (left, right) = (AROUND * u + ALONG * v, AROUND * u - ALONG * v);
-    // From the middle of the eye, 0 to 1 at its edge, along both spirals.
+    // Distance from the centre of the eye, 0 to 1 at its edge, along both spirals.
     let [a, b] = [left, right].map(|x| 2.0 * (x - x.floor()) - 1.0);
     let patch = octaves(6.0 * u, 4.0 * v, (6, 4), 9, 3);
     let skin = mix(GOLD, GREEN, ops::smoothstep(0.35, 1.1, v + 0.35 * patch));
@@ -126,7 +126,7 @@ pub(super) fn eyes(u: f64, v: f64) -> Paint {
     mix(eye, SPINE, 0.8 * line(ops::hypot(a, b), 0.28))
 }
 
-/// The green body of a cactus: ribs with pale areoles, u around.
+/// Paints the green body of a cactus: ribs with pale areoles, u around.
 pub(super) fn ribbed(u: f64, v: f64) -> Paint {
     const GROOVE: Paint = [0.15, 0.30, 0.15];
     const CREST: Paint = [0.38, 0.55, 0.30];
@@ -138,7 +138,7 @@ pub(super) fn ribbed(u: f64, v: f64) -> Paint {
     mix(skin, WOOL, 0.9 * line(ops::hypot(across, along), 0.20))
 }
 
-/// Pale fired clay: grains, and faint rings of the wheel around it.
+/// Paints pale fired clay: grains, and faint rings of the wheel around it.
 pub(super) fn clay(u: f64, v: f64) -> Paint {
     let patch = octaves(4.0 * u, 3.0 * v, (4, 3), 6, 4);
     let grain = gradient(48.0 * u, 48.0 * v, (48, 48), 7);
@@ -147,7 +147,7 @@ pub(super) fn clay(u: f64, v: f64) -> Paint {
     [light; 3].map(|x| x.clamp(0.6, 1.0))
 }
 
-/// Upper half (v below one half): the anther's pollen; lower half: the filament, pale at its foot.
+/// Paints in the upper half (v below one half) the anther's pollen, in the lower half the filament, pale at its foot.
 pub(super) fn stamen(u: f64, v: f64) -> Paint {
     const POLLEN: Paint = [0.93, 0.70, 0.16];
     const GRAIN: Paint = [0.72, 0.42, 0.08];
@@ -161,7 +161,7 @@ pub(super) fn stamen(u: f64, v: f64) -> Paint {
     }
 }
 
-/// A thorn: pale at the foot (v = 0), red-brown at the point.
+/// Paints a thorn: pale at the foot (v = 0), red-brown at the point.
 pub(super) fn thorn(u: f64, v: f64) -> Paint {
     const FOOT: Paint = [0.72, 0.64, 0.44];
     const POINT: Paint = [0.38, 0.20, 0.12];

@@ -1,9 +1,9 @@
-//! Points of a scan with their colours -> what is painted on the surfaces that were found in it.
+//! Paints the surfaces that were found in a scan with the colours of its points.
 //!
-//! `points -> dots, few enough -> how far each is believed -> the reach that predicts dots left out best -> texels -> holes
+//! `points -> dots, few enough -> weights of the dots -> the reach that predicts left-out dots best -> texels -> holes
 //! filled from around`
 //!
-//! All means are of light, not of the numbers in files.
+//! All means are of linear light, not of the numbers in files.
 
 use base::{Executor, map_indexed, ops};
 use geom::{KdTree, Voxels, nearest_on_polyline3};
@@ -13,33 +13,35 @@ use plant::Sheet;
 
 use super::filled::{Cell, Light, filled};
 
-/// More points are gathered into cubes of one colour each: a leaf's texture shows no more.
+/// Most dots: more points are merged into cubes of one colour each, as a leaf's texture shows no more.
 const MOST_DOTS: usize = 60_000;
-/// Fewer points show no colour but their mean.
+/// Least number of points that show more than their mean colour.
 const FEWEST_DOTS: usize = 16;
-/// Neighbours by which a dot is judged lie within this many spacings: 28 or so.
+/// Radius of the neighbourhood in which a dot is judged, in spacings: 28 neighbours or so.
 const AROUND: f64 = 3.0;
-/// A dot that has lost its neighbours on one side lies at a margin: the mean of its neighbours is this far from it, in their
-/// mean distances. On an even sheet it is 0.17, on a straight margin 0.64.
+/// Distance from a dot to the mean of its neighbours, in their mean distances, above which it has lost its neighbours
+/// on one side and lies at a margin. On an even sheet it is 0.17, on a straight margin 0.64.
 const LOPSIDED: f64 = 0.42;
-/// Dots that are no more spacings than this from one at a margin are not painted with: a scanner's beam falls there half on
-/// what is behind. Of what is so narrow that less than the second share of its dots is left all are.
+/// Distance from a dot at a margin, in spacings, up to which dots are not used: a scanner's beam falls there half on
+/// the background.
 const BESIDE: f64 = 1.0;
+/// Least share of the dots of a narrow part that must remain; with less, all are used.
 const LEFT: f64 = 0.3;
-/// Deviations from the median of the neighbours, in the square root of light, that are taken for none: 5 of 255.
+/// Deviations from the median of the neighbours, in the square root of light, that count as none: 5 of 255.
 const EVEN: f64 = 0.02;
-/// Reaches that are tried, in spacings of the dots, and dots that are left out in turn to try them.
+/// Reaches that are tried, in spacings of the dots.
 const REACHES: [f64; 8] = [0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6];
+/// Dots that are left out in turn to try them.
 const TRIALS: usize = 1500;
-/// Farther than this many reaches a dot counts nothing.
+/// Distance in reaches beyond which a dot has no weight.
 const CUT: f64 = 2.5;
-/// A place whose nearest dot is farther than this many spacings, or than the second number times as far as is usual, is in a hole.
+/// Distance of the nearest dot, in spacings, and relative to the usual one, above which a place is in a hole.
 const HOLE: [f64; 2] = [3.0, 2.5];
 /// Most texels along a blade, and fewest on a side.
 const TEXELS: [f64; 2] = [512.0, 16.0];
-/// Places of a limb that have a colour of their own.
+/// Number of colours along a limb.
 const PLACES: usize = 12;
-/// Points of a limb are at most this many of its radii from its line.
+/// Largest distance of a limb's points from its line, in its radii.
 const ON_LIMB: f64 = 2.0;
 
 /// Coloured points of one organ of a scan.
@@ -58,28 +60,29 @@ pub struct CloudColours {
     /// Every dot, for limbs.
     places: Vec<DVec3>,
     light: Vec<Light>,
-    /// Those that are painted with.
+    /// The dots that are used for painting.
     inner: Inner,
     spacing: f64,
-    /// Standard deviation of the bell by which dots are weighed, metres.
+    /// Standard deviation of the Gaussian weight of dots, metres.
     reach: f64,
 }
 
-/// Dots that are painted with.
+/// Dots that are used for painting.
 #[derive(Clone, Debug)]
 struct Inner {
     tree: KdTree,
     places: Vec<DVec3>,
     light: Vec<Light>,
-    /// How far each is believed, 0 to 1.
+    /// Weight of each, 0 to 1.
     weight: Vec<f64>,
 }
 
 impl CloudColours {
-    /// Of points with an sRGB colour each.
+    /// Prepares points with an sRGB colour each.
     ///
-    /// Points that are wholly black count as points without a colour. Guaranteed: the same bits for any executor. `None` for
-    /// fewer than 16 points with a colour, or if all lie in one place. Cost: n log n; a million points take about a second.
+    /// Points that are completely black count as points without a colour. Guaranteed: the same bits for any executor.
+    /// `None` for fewer than 16 points with a colour, or if all coincide. Cost: n log n; a million points take about a
+    /// second.
     pub fn new(points: &[DVec3], colors: &[[u8; 3]], executor: &dyn Executor) -> Option<Self> {
         let (places, light) = dots(points, colors)?;
         let tree = KdTree::new(&places);
@@ -104,11 +107,11 @@ impl CloudColours {
         Some(Self { places, light, inner, spacing, reach: REACHES[best] * spacing })
     }
 
-    /// The texture of a sheet that lies among the points: in the coordinates u and 1 - v of its parameters.
+    /// Paints the texture of a sheet that lies among the points: in the coordinates u and 1 - v of its parameters.
     ///
-    /// Each texel has the mean of the points around its place, each counting by a bell over its distance; places in holes of
-    /// the cloud have what is around the hole. Guaranteed: every texel is opaque; the same bits for any executor. Not guaranteed:
-    /// detail finer than the cloud. Cost: linear in texels, of which there are 512 along the blade at most.
+    /// Each texel has the mean of the points around its place, with Gaussian weights of their distances; holes of the
+    /// cloud are filled from their surroundings. Guaranteed: every texel is opaque; the same bits for any executor. Not
+    /// guaranteed: detail finer than the cloud. Cost: linear in texels, of which there are at most 512 along the blade.
     pub fn sheet(&self, sheet: &Sheet, executor: &dyn Executor) -> Texture {
         let (width, height) = size(sheet, 0.5 * self.reach);
         let columns = width as usize;
@@ -129,7 +132,7 @@ impl CloudColours {
         let far = (HOLE[0] * self.spacing).max(HOLE[1] * usual);
         let cells = map_indexed(executor, height as usize, |row| {
             let known = |near: &Option<(DVec3, f64)>| near.filter(|n| n.1 <= far);
-            let paint = |near| known(near).and_then(|near| self.inner.at(near, self.reach, usize::MAX));
+            let paint = |near| known(near).and_then(|near| self.inner.light_at(near, self.reach, usize::MAX));
             rows[row].iter().map(paint).collect::<Vec<Cell>>()
         });
         let whole = filled(cells.concat(), columns);
@@ -142,8 +145,8 @@ impl CloudColours {
         Texture { width, height, pixels }
     }
 
-    /// Colours along a limb with a radius at each point of its line, at twelve even shares of its length, linear RGB; none
-    /// where no point lies on it.
+    /// Returns colours along a limb with a radius at each point of its line, at twelve even shares of its length,
+    /// linear RGB; empty if no point lies on it.
     pub fn along(&self, line: &[DVec3], radii: &[f64]) -> Vec<[f32; 3]> {
         if line.len() < 2 || radii.is_empty() {
             return Vec::new();
@@ -173,8 +176,8 @@ impl CloudColours {
         (0..PLACES).map(smooth).collect()
     }
 
-    /// The mean colour of dots, without the darkest and the lightest quarter of them: of a thin limb many are half of what is
-    /// behind.
+    /// Returns the mean colour of dots, without the darkest and the lightest quarter of them: many dots of a thin limb
+    /// are half background.
     fn usual(&self, rows: &[usize]) -> Cell {
         let mut rows = rows.to_vec();
         let bright = |row: &usize| self.light[*row].iter().sum::<f64>();
@@ -185,10 +188,10 @@ impl CloudColours {
 }
 
 impl Inner {
-    /// The light at a place whose nearest dot is `gap` away, without the dot `but`.
-    fn at(&self, (p, gap): (DVec3, f64), reach: f64, but: usize) -> Cell {
+    /// Returns the light at a place whose nearest dot is `gap` away, without the dot `but`.
+    fn light_at(&self, (p, gap): (DVec3, f64), reach: f64, but: usize) -> Cell {
         let mut near = Vec::new();
-        // A surface that lies beside the points by some way has them all that much farther away.
+        // A surface at a distance from the points has all of them that much farther away.
         self.tree.within(p, (gap * gap + CUT * CUT * reach * reach).sqrt(), &mut near);
         let bell = |i: usize| {
             let over = self.places[i].distance_squared(p) - gap * gap;
@@ -197,14 +200,15 @@ impl Inner {
         weighted(near.into_iter().filter(|i| *i != but).map(|i| (self.light[i], bell(i))))
     }
 
-    /// How wrong dots are predicted by the others with a reach: the square of the error of each that is tried, weighed.
+    /// Returns the errors of the prediction of dots by the others with a reach: the weighted squared error of each
+    /// tried dot.
     fn trial(&self, reach: f64) -> Vec<f64> {
         let step = self.places.len().div_ceil(TRIALS).max(1);
         let one = |i: usize| {
             let mut gaps = [0.0; 2];
             // The first is the dot itself.
             self.tree.nearest_distances(self.places[i], &mut gaps);
-            let guess = self.at((self.places[i], gaps[1]), reach, i)?;
+            let guess = self.light_at((self.places[i], gaps[1]), reach, i)?;
             let off =
                 tone(guess).iter().zip(tone(self.light[i])).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
             Some(self.weight[i] * off)
@@ -213,7 +217,7 @@ impl Inner {
     }
 }
 
-/// The coarsest reach that predicts no worse than the best one beyond what chance does: by one standard error of the mean
+/// Returns the coarsest reach that predicts no worse than the best one beyond chance: by one standard error of the mean
 /// of their differences (Breiman et al. 1984, section 3.4.3).
 fn coarsest(wrong: &[Vec<f64>]) -> usize {
     let sum = |k: usize| wrong[k].iter().sum::<f64>();
@@ -228,7 +232,7 @@ fn coarsest(wrong: &[Vec<f64>]) -> usize {
     (best..wrong.len()).rev().find(as_good).unwrap_or(best)
 }
 
-/// Usable points with their light, of many each cube's mean.
+/// Returns usable points with their light, or if there are many the mean of each cube.
 fn dots(points: &[DVec3], colors: &[[u8; 3]]) -> Option<(Vec<DVec3>, Vec<Light>)> {
     let usable = |row: &(&DVec3, &[u8; 3])| row.0.is_finite() && *row.1 != [0; 3];
     let kept = points.iter().zip(colors).filter(usable);
@@ -247,7 +251,8 @@ fn dots(points: &[DVec3], colors: &[[u8; 3]]) -> Option<(Vec<DVec3>, Vec<Light>)
     Some((cubes.means(&places), lights))
 }
 
-/// How far dots are apart: the edge of the square that each has, if the sixth neighbour is as far as on an even sheet.
+/// Returns the spacing of dots: the edge of the square that each has, if the sixth neighbour is as far as on an even
+/// sheet.
 fn spacing(places: &[DVec3], tree: &KdTree) -> Option<f64> {
     let step = places.len().div_ceil(2000).max(1);
     let sixth = places.iter().step_by(step).map(|p| {
@@ -259,7 +264,7 @@ fn spacing(places: &[DVec3], tree: &KdTree) -> Option<f64> {
     (spacing > 0.0 && spacing.is_finite()).then_some(spacing)
 }
 
-/// Whether a dot lies at a margin, and how far it is believed: less the more it differs from what is around it.
+/// Returns whether a dot lies at a margin, and its weight: lower the more it differs from its surroundings.
 fn judged(row: usize, places: &[DVec3], light: &[Light], tree: &KdTree, spacing: f64) -> (bool, f64) {
     let (p, mut near) = (places[row], Vec::new());
     tree.within(p, AROUND * spacing, &mut near);
@@ -275,15 +280,15 @@ fn judged(row: usize, places: &[DVec3], light: &[Light], tree: &KdTree, spacing:
         let tones = near.iter().map(|&i| tone(light[i])[k]);
         let usual = base::median(tones.clone().collect()).unwrap_or(own[k]);
         let spread = base::median(tones.map(|t| (t - usual).abs()).collect()).unwrap_or(0.0);
-        // 4.685 deviations, the deviation from the median (Huber 1981).
+        // 4.685 deviations, estimated from the median (Huber 1981).
         let x = (own[k] - usual) / (4.685 * 1.4826 * spread.max(EVEN));
         if x.abs() < 1.0 { (1.0 - x * x) * (1.0 - x * x) } else { 0.0 }
     });
-    // Never nothing: a place may have no other.
+    // Never 0: a place may have no other dot.
     (middle.length() > LOPSIDED * away, alike[0].min(alike[1]).min(alike[2]).max(1e-3))
 }
 
-/// Light nearly as eyes tell it apart.
+/// Converts light to a nearly perceptual scale.
 fn tone(light: Light) -> [f64; 3] {
     light.map(f64::sqrt)
 }
@@ -302,7 +307,7 @@ fn narrow(light: Light) -> [f32; 3] {
     light.map(|x| x as f32)
 }
 
-/// Width and height of a texture whose texels are `step` metres wide on the sheet, within bounds.
+/// Returns width and height of a texture whose texels are `step` metres wide on the sheet, within bounds.
 fn size(sheet: &Sheet, step: f64) -> (u32, u32) {
     let n = sheet.across.len().max(1);
     let middle: Vec<DVec3> = sheet.points.iter().skip(n / 2).step_by(n).copied().collect();
@@ -313,7 +318,7 @@ fn size(sheet: &Sheet, step: f64) -> (u32, u32) {
     (count(wide), count(long))
 }
 
-/// The place of a sheet at u and at a share of the way to the tip.
+/// Returns the point of a sheet at u and at a share of the length to the tip.
 fn place(sheet: &Sheet, u: f64, share: f64) -> Option<DVec3> {
     let n = sheet.across.len();
     let ((j, s), (i, t)) = (between(&sheet.across, u)?, between(&sheet.along, share)?);
@@ -322,7 +327,7 @@ fn place(sheet: &Sheet, u: f64, share: f64) -> Option<DVec3> {
     Some(near.lerp(far, t))
 }
 
-/// Between which two of numbers that rise or fall one lies, and how far from the first to the second.
+/// Returns the interval of monotonic numbers that contains x, and the position in it from the first end to the second.
 fn between(numbers: &[f64], x: f64) -> Option<(usize, f64)> {
     let last = numbers.len().checked_sub(2)?;
     let falls = numbers[0] > numbers[last + 1];

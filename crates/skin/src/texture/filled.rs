@@ -1,11 +1,12 @@
-//! Holes of a picture -> what is around them: means of ever larger squares, from the finest that has any (Gortler et al. 1996).
+//! Fills holes of a picture from around: means of ever larger squares, from the finest that has any (Gortler et al.
+//! 1996).
 
 /// Linear red, green and blue, 0 to 1.
 pub(super) type Light = [f64; 3];
-/// A texel that is known, or not.
+/// A texel, `None` if unknown.
 pub(super) type Cell = Option<Light>;
 
-/// The cells of a picture with its unknown ones filled; none of a picture without a known one.
+/// Returns the cells of a picture with its unknown ones filled; empty for a picture without a known one.
 ///
 /// Guaranteed: known cells stay. Cost: linear.
 pub(super) fn filled(cells: Vec<Cell>, columns: usize) -> Vec<Cell> {
@@ -25,7 +26,7 @@ pub(super) fn filled(cells: Vec<Cell>, columns: usize) -> Vec<Cell> {
     };
     let coarse = filled((0..half.0 * half.1).map(mean).collect(), half.0);
     let between = |x: usize, y: usize| {
-        // Three quarters of the square that the cell is in and a quarter of the next one, each way.
+        // Three quarters of the square that contains the cell and a quarter of the next one, in both directions.
         let side = |at: usize, most: usize| {
             let next = if at.is_multiple_of(2) { (at / 2).saturating_sub(1) } else { at / 2 + 1 };
             [(at / 2, 0.75), (next.min(most - 1), 0.25)]

@@ -1,5 +1,5 @@
-//! Leaves with the veins of their kind, and petals: colour, relief and what light comes through. u across with the midrib
-//! at one half, v from the tip (0) down to the root (1), as in [`BladeChart`].
+//! Leaves with the veins of their kind, and petals: colour, relief and transmission. u across with the midrib at one
+//! half, v from the tip (0) down to the root (1), as in [`BladeChart`].
 
 use base::{Cancelled, Digest, Executor, Run, map_indexed, ops};
 use glam::DVec2;
@@ -15,10 +15,10 @@ use crate::natural::VeinPattern;
 /// Roughness of the glossiest leaf material; those of a surface are shares of it.
 pub(crate) const LEAF_ROUGHNESS: f32 = 0.7;
 
-/// Height of a leaf's relief over its length.
+/// Height of a leaf's relief relative to its length.
 pub(super) const LEAF_DEPTH: f64 = 0.010;
 
-/// The surface of a leaf: `size` pixels from root to tip, 64 to 4096, and as wide as the blade is.
+/// Paints the surface of a leaf: `size` pixels from root to tip, 64 to 4096, and as wide as the blade is.
 pub(crate) fn leaf(
     venation: VeinPattern,
     blade: &Blade,
@@ -53,7 +53,7 @@ pub(crate) fn leaf(
     })
 }
 
-/// A blade for leaves whose own outline is not asked for: each drawn leaf has another, and all share one surface.
+/// Returns a blade for leaves whose own outline is not needed: drawn leaves differ, and all share one surface.
 pub(crate) fn any_blade() -> Blade {
     let right = (1..12).map(|k| {
         let t = f64::from(k) / 12.0;
@@ -79,11 +79,11 @@ struct Vein {
     width: (f64, f64),
 }
 
-/// Where the veins of a blade are.
+/// Positions of the veins of a blade.
 pub(super) struct Plan {
     venation: VeinPattern,
     pub(super) chart: BladeChart,
-    /// Of the chart, in units of the blade.
+    /// Extent of the chart, in units of the blade.
     pub(super) extent: DVec2,
     low: f64,
     /// Half of the blade's width at even steps from its lowest place to its highest.
@@ -95,17 +95,17 @@ pub(super) struct Plan {
 /// Distances from veins in the cells of a grid over the chart.
 struct Fields {
     size: (usize, usize),
-    /// To the nearest thick or side vein in units of the blade's length, less its half width, and that width.
+    /// Distance to the nearest thick or side vein in units of the blade's length, minus its half width, and that width.
     near: Vec<[f64; 2]>,
 }
 
 const STEPS: usize = 64;
 
-/// Half of a side vein's width at its beginning and at its end, and how far from the midrib one may begin that was meant to
-/// begin on it; shares of the blade's length.
+/// Half of a side vein's width at its beginning and at its end, as shares of the blade's length.
 const SIDE_VEIN: (f64, f64) = (0.0058, 0.0012);
+/// Distance from the midrib, as a share of the blade's length, within which a vein is extended to begin on it.
 const LED_ON: f64 = 0.12;
-/// What runs over the midrib by less than this share of a vein is its beginning.
+/// Largest share of a vein that may cross the midrib and still counts as its beginning.
 const RUN_OVER: f64 = 0.2;
 
 impl Plan {
@@ -130,7 +130,7 @@ impl Plan {
         plan
     }
 
-    /// Half of the width at a height.
+    /// Returns half of the width at a height.
     fn half_at(&self, y: f64) -> f64 {
         let at = ((y - self.low) / self.extent.y).clamp(0.0, 1.0) * STEPS as f64;
         let k = whole(at).min(STEPS - 1);
@@ -176,8 +176,8 @@ impl Plan {
         veins
     }
 
-    /// A vein as it was drawn, from the midrib outwards: two of one that crosses it, but for an end that only runs over it;
-    /// one that begins a little beside it is led on to it.
+    /// Converts a drawn vein, from the midrib outwards: into two if it crosses the midrib, unless an end only
+    /// overshoots it; one that begins near the midrib is extended to it.
     fn drawn(&self, vein: &BladeVein, midrib: &[DVec2]) -> Vec<Vein> {
         let line = &vein.line;
         let across = line.windows(2).enumerate().find_map(|(k, w)| {
@@ -200,7 +200,8 @@ impl Plan {
         lines.into_iter().map(|points| Vein { points, width }).collect()
     }
 
-    /// A vein that does not cross the midrib, from the end that is nearer to it, and from the midrib itself where that is near.
+    /// Converts a vein that does not cross the midrib, from the end nearer to it, and from the midrib itself if that is
+    /// near.
     fn led_on(&self, line: &[DVec2], midrib: &[DVec2]) -> Vec<DVec2> {
         let mut points = line.to_vec();
         let to_midrib =
@@ -217,7 +218,7 @@ impl Plan {
         points
     }
 
-    /// Side veins that leave the midrib and arch to the margin, those of both sides half a step apart.
+    /// Adds side veins that leave the midrib and arch to the margin, those of both sides offset by half a step.
     fn feathered(&self, veins: &mut Vec<Vein>) {
         const EACH: u32 = 8;
         let length = self.extent.y;
@@ -234,7 +235,7 @@ impl Plan {
                 curve(DVec2::new(0.0, start), DVec2::new(0.58 * end.x, ops::lerp(start, high, 0.40)), end);
             veins.push(Vein { points, width: (SIDE_VEIN.0 * length, SIDE_VEIN.1 * length) });
         }
-        // Lobes beside the stalk have veins of their own.
+        // Lobes next to the stalk have veins of their own.
         if self.low < -0.01 * length {
             for side in [1.0, -1.0] {
                 let end = DVec2::new(0.85 * side * self.half_at(0.5 * self.low), 0.6 * self.low);
@@ -244,7 +245,7 @@ impl Plan {
         }
     }
 
-    /// Side veins to the tips of lobes, and thinner ones between.
+    /// Adds side veins to the tips of lobes, and thinner ones between.
     fn to_tips(&self, tips: &[DVec2], veins: &mut Vec<Vein>) {
         let length = self.extent.y;
         for tip in tips {
@@ -261,7 +262,7 @@ impl Plan {
         }
     }
 
-    /// Side veins of those from the `from`th on, as far as the blade reaches.
+    /// Adds side veins to those from the `from`th on, as far as the blade reaches.
     fn branched(&self, blade: &Blade, from: usize, each: u32, veins: &mut Vec<Vein>) {
         let length = self.extent.y;
         let mut more = Vec::new();
@@ -303,8 +304,8 @@ impl Plan {
             return Spot { height: 0.5 + 0.25 * streak, paint, rough: 0.78 + 0.1 * fine, through: 0.35 };
         }
         let wander = 0.004 * gradient(9.0 * u, 13.0 * v, (9, 13), 3);
-        let [off, width] = self.fields.at(u + wander, v + wander);
-        // On a vein, on the swelling beside it, and in the middle of a field between veins.
+        let [off, width] = self.fields.interpolate(u + wander, v + wander);
+        // On a vein, on the swelling next to it, and in the middle of a field between veins.
         let vein = 1.0 - ops::smoothstep(0.0, 1.0, (off + width) / (1.25 * width));
         let thick = (width / 0.009).min(1.0);
         let swell = ops::smoothstep(0.0, 0.045, off);
@@ -318,7 +319,7 @@ impl Plan {
             let thin = 45.0 * across;
             rib = rib.max(0.35 * (1.0 - ops::smoothstep(0.1, 0.4, (thin - thin.round()).abs())));
         } else {
-            let plate = self.net.at(u * aspect + 0.006 * fine, v);
+            let plate = self.net.plate_at(u * aspect + 0.006 * fine, v);
             cross = (1.0 - ops::smoothstep(0.0007, 0.0034, plate.edge)) * (0.45 + 0.55 * plate.border);
         }
         let side = vein * (0.45 + 0.55 * thick);
@@ -343,7 +344,7 @@ impl Fields {
         if veins.is_empty() {
             return Self { size: (1, 1), near: vec![[1.0, 0.001]] };
         }
-        // As fine as the thinnest vein: between cells the distance is as good as linear.
+        // As fine as the thinnest vein: between cells the distance is nearly linear.
         let size = (160, 320);
         let length = plan.extent.y;
         let pieces: Vec<(DVec2, DVec2, f64, f64)> = veins
@@ -358,7 +359,7 @@ impl Fields {
             let v = (j as f64 + 0.5) / size.1 as f64;
             let mut row = Vec::with_capacity(size.0);
             let y = plan.chart.place(DVec2::new(0.5, v)).y;
-            // Only what may be nearest: a vein further away along the blade than this is not.
+            // Only veins that may be nearest: one further away along the blade than this is not.
             let reach = 0.16 * length;
             let (lows, highs) = (y - reach, y + reach);
             let near: Vec<_> =
@@ -382,7 +383,7 @@ impl Fields {
         Self { size, near: rows.concat() }
     }
 
-    fn at(&self, u: f64, v: f64) -> [f64; 2] {
+    fn interpolate(&self, u: f64, v: f64) -> [f64; 2] {
         let place = |x: f64, n: usize| {
             let at = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
             let k = whole(at).min(n.saturating_sub(2));
@@ -399,7 +400,7 @@ impl Fields {
     }
 }
 
-/// Half of the blade's width at a height.
+/// Returns half of the blade's width at a height.
 fn half_width(blade: &Blade, y: f64) -> f64 {
     let n = blade.outline.len();
     let edges = (0..n).map(|i| (blade.outline[i], blade.outline[(i + 1) % n]));
@@ -409,8 +410,8 @@ fn half_width(blade: &Blade, y: f64) -> f64 {
     edges.filter_map(crossing).fold(0.0, f64::max)
 }
 
-/// Places of the right margin where `far` is larger than on both sides by a twentieth of the blade's width: tips of lobes,
-/// from the root on. The widest place of a blade without lobes is one, too.
+/// Returns the places of the right margin where `far` is larger than on both sides by a twentieth of the blade's width:
+/// tips of lobes, from the root on. The widest place of a blade without lobes is one, too.
 fn tips(blade: &Blade, far: fn(DVec2) -> f64) -> Vec<DVec2> {
     let widest = blade.outline.iter().map(|p| p.x).fold(0.0, f64::max);
     let least = 0.05 * widest;
@@ -433,16 +434,17 @@ fn tips(blade: &Blade, far: fn(DVec2) -> f64) -> Vec<DVec2> {
     tips
 }
 
-/// Where a vein that begins `gap` beside a midrib comes from, if it began as it goes on: by its way over as much again.
+/// Returns the place on the midrib from which a vein that begins `gap` away from it starts, by extending its direction
+/// over its first `gap`.
 fn onwards(vein: &[DVec2], gap: f64, midrib: &[DVec2]) -> Option<DVec2> {
-    // Beyond this many gaps it would run beside the midrib.
+    // Beyond this number of gaps it would run along the midrib.
     const FARTHEST: f64 = 3.0;
     let from = *vein.first()?;
     let way = (from - geom::point_at(vein, gap)?).try_normalize()?;
     hit(from, way, FARTHEST * gap, midrib).map(|far| from + way * far)
 }
 
-/// How many times `way` it is from a point along it to a line, at most so many.
+/// Returns the distance from a point along `way` to a line, in units of `way`, if at most `most`.
 fn hit(from: DVec2, way: DVec2, most: f64, line: &[DVec2]) -> Option<f64> {
     let hits = line.windows(2).filter_map(|w| {
         let (along, across) = (w[1] - w[0], way.perp_dot(w[1] - w[0]));
@@ -452,7 +454,7 @@ fn hit(from: DVec2, way: DVec2, most: f64, line: &[DVec2]) -> Option<f64> {
     hits.min_by(f64::total_cmp)
 }
 
-/// A curve from `a` to `b` that `pull` draws to itself.
+/// Returns a curve from `a` to `b` that is drawn towards `pull`.
 fn curve(a: DVec2, pull: DVec2, b: DVec2) -> Vec<DVec2> {
     let at = |k: u32| {
         let t = f64::from(k) / 12.0;
@@ -461,7 +463,7 @@ fn curve(a: DVec2, pull: DVec2, b: DVec2) -> Vec<DVec2> {
     (0..=12).map(at).collect()
 }
 
-/// The place at a share of the points of a line.
+/// Returns the point at a share of the points of a line.
 fn at_share(points: &[DVec2], share: f64) -> DVec2 {
     let last = points.len() - 1;
     let at = share.clamp(0.0, 1.0) * last as f64;
@@ -469,7 +471,7 @@ fn at_share(points: &[DVec2], share: f64) -> DVec2 {
     points[k].lerp(points[(k + 1).min(last)], at - k as f64)
 }
 
-/// The surface of a petal, twice as long as it is wide; `size` pixels long.
+/// Paints the surface of a petal, twice as long as it is wide; `size` pixels long.
 pub(crate) fn petals(inks: &PetalInks, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
     let mut content = Digest::new();
     content.add("petal").add(&size);
@@ -481,7 +483,7 @@ pub(crate) fn petals(inks: &PetalInks, size: u32, run: &Run<'_>) -> Result<Surfa
             Sheet { size: (size / 2, size), extent: (0.6, 1.0), depth: 0.006, tiles: false, mean: None };
         surface(run, &sheet, true, &|u, v| {
             let (paint, vein) = petal(inks, u, v);
-            // Cells of the skin stand up: velvet.
+            // Raised cells of the skin: velvet.
             let skin = gradient(97.0 * u, 193.0 * v, (97, 193), 81);
             let keel = line(2.0 * u - 1.0, 0.35) * v;
             Spot {
@@ -522,7 +524,7 @@ mod tests {
     #[test]
     fn drawn_veins_begin_on_the_midrib_and_are_as_bold_as_they_were_drawn() {
         let p = DVec2::new;
-        // One from the margin to a little beside the midrib, drawn lightly, and one that branches off far from it.
+        // One from the margin to near the midrib, drawn lightly, and one that branches off far from it.
         let light = BladeVein { line: vec![p(0.25, 0.6), p(0.15, 0.5), p(0.04, 0.4)], boldness: 0.5 };
         let bold = BladeVein { line: vec![p(-0.2, 0.5), p(-0.28, 0.6)], boldness: 2.0 };
         let blade = Blade { veins: vec![light, bold], ..any_blade() };
@@ -532,7 +534,7 @@ mod tests {
         let start = veins[1].points[0];
         assert!(start.distance(p(0.0, 0.4 - 0.04 / 1.1)) < 1e-12, "{start}: straight on");
         assert_eq!(veins[2].points[0], p(-0.2, 0.5));
-        // Across the midrib: one on each side, but not of an end that runs over it.
+        // Across the midrib: one on each side, but not for an end that only overshoots it.
         let plan = Plan::new(VeinPattern::Pinnate, &blade, &Serial);
         let of = |from: DVec2, to: DVec2| -> Vec<Vec<DVec2>> {
             let vein = BladeVein::from(vec![from, to]);
@@ -542,7 +544,7 @@ mod tests {
         assert_eq!(of(left, right), [[p(0.0, 0.4), left], [p(0.0, 0.4), right]]);
         let over = of(right, short);
         assert!(over.len() == 1 && over[0][0].x.abs() < 1e-12 && over[0][1] == right, "{over:?}");
-        // A short one beside it is no vein that begins on it.
+        // A short one next to it does not begin on it.
         assert_eq!(of(p(0.1, 0.4), p(0.11, 0.45)), [[p(0.1, 0.4), p(0.11, 0.45)]]);
         assert!((veins[2].width.0 - 4.0 * veins[1].width.0).abs() < 1e-12);
     }

@@ -30,7 +30,7 @@ pub(crate) use foliage::{LEAF_ROUGHNESS, any_blade, leaf, petals};
 pub(crate) use patterns::{paint as paint_material, painted as painted_material};
 pub(crate) use relief::Surface;
 
-/// Height of the florets over the dome of a disc at a place of its unit circle, about -1 to 1.
+/// Returns the height of the florets over the dome of a disc at a point of its unit circle, about -1 to 1.
 pub(crate) fn unevenness(x: f64, y: f64) -> f64 {
     noise::gradient(5.0 * x + 8.0, 5.0 * y + 8.0, (64, 64), 31)
 }
@@ -47,11 +47,11 @@ pub(crate) enum Motif {
     PaleDisc,
     Fruit,
     PaleFruit,
-    /// Of a fruit with eyes, such as a pineapple.
+    /// A fruit with eyes, such as a pineapple.
     Eyes,
     /// A green, ribbed body, such as a cactus's.
     Body,
-    /// Of pots and of soil, without a hue.
+    /// Pots and soil, without a hue.
     Clay,
     Stamen,
     Thorn,
@@ -60,7 +60,8 @@ pub(crate) enum Motif {
 const MOTIFS: usize = 11;
 
 impl Motif {
-    /// The texture, painted on first use (up to about 10 ms on one thread) and kept for the life of the process.
+    /// Returns the texture, painted on first use (up to about 10 ms on one thread) and kept for the life of the
+    /// process.
     pub(crate) fn texture(self, executor: &dyn Executor) -> Arc<Texture> {
         static PAINTED: [OnceLock<Arc<Texture>>; MOTIFS] = [const { OnceLock::new() }; MOTIFS];
         PAINTED[self as usize].get_or_init(|| Arc::new(self.paint(executor))).clone()
@@ -84,10 +85,10 @@ impl Motif {
     }
 }
 
-/// Paint at u and v.
+/// Returns the paint at u and v.
 type Paints<'a> = dyn Fn(f64, f64) -> Paint + Sync + 'a;
 
-/// Paints `f(u, v)` at the middle of each pixel; v runs down.
+/// Paints `f(u, v)` at the centre of each pixel; v runs down.
 fn canvas(executor: &dyn Executor, width: u32, height: u32, f: &Paints<'_>) -> Texture {
     // Rows that one job paints: some tenths of a millisecond.
     const ROWS: u32 = 16;
@@ -107,7 +108,7 @@ fn canvas(executor: &dyn Executor, width: u32, height: u32, f: &Paints<'_>) -> T
     Texture { width, height, pixels: bands.concat() }
 }
 
-/// The whole part of a place that is not negative.
+/// Returns the whole part of a coordinate that is not negative.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "among the pixels of a picture")]
 fn whole(at: f64) -> usize {
     at as usize
@@ -128,7 +129,7 @@ fn shade(a: Paint, factor: f64) -> Paint {
     a.map(|x| x * factor)
 }
 
-/// 1 at 0, 0 from `width` on, smooth.
+/// Returns 1 at 0, 0 from `width` on, smooth.
 fn line(distance: f64, width: f64) -> f64 {
     1.0 - base::ops::smoothstep(0.0, width, distance.abs())
 }

@@ -1,6 +1,6 @@
 //! Noise that repeats at the edges of a texture, with the same bits everywhere.
 
-/// Gradient noise on a lattice that repeats every `period` cells in x and in y; about -1 to 1.
+/// Evaluates gradient noise on a lattice that repeats every `period` cells in x and in y; about -1 to 1.
 pub(crate) fn gradient(x: f64, y: f64, period: (i32, i32), salt: u32) -> f64 {
     let (ix, iy) = (floor(x), floor(y));
     let (u, v) = (x - f64::from(ix), y - f64::from(iy));
@@ -17,7 +17,7 @@ pub(crate) fn gradient(x: f64, y: f64, period: (i32, i32), salt: u32) -> f64 {
     1.5 * base::ops::lerp(low, high, sv)
 }
 
-/// Octaves of [`gradient`], each of twice the frequency and half the height of the one before.
+/// Sums octaves of [`gradient`], each of twice the frequency and half the height of the one before.
 pub(crate) fn octaves(x: f64, y: f64, period: (i32, i32), salt: u32, n: u32) -> f64 {
     let (mut sum, mut height, mut k) = (0.0, 0.5, 1);
     for i in 0..n {
@@ -29,7 +29,8 @@ pub(crate) fn octaves(x: f64, y: f64, period: (i32, i32), salt: u32, n: u32) -> 
     sum
 }
 
-/// Distances to the nearest and second nearest of one random point per cell, repeating every `period` cells.
+/// Returns the distances to the nearest and second nearest of one random point per cell, repeating every `period`
+/// cells.
 pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64) {
     let (ix, iy) = (floor(x), floor(y));
     let (fx, fy) = (f64::from(ix), f64::from(iy));
@@ -51,30 +52,31 @@ pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64)
     (first.sqrt(), second.sqrt())
 }
 
-/// Plates that cover a tile: the cells of points on a lattice whose every other row is moved by half a cell, as bricks are,
-/// so that drawn-out plates end in wedges between their neighbours.
+/// Plates that cover a tile: the cells of points on a lattice with every other row offset by half a cell, as in bricks,
+/// so that elongated plates end in wedges between their neighbours.
 #[derive(Debug)]
 pub(crate) struct Plates {
     grid: (i32, i32),
-    /// How far each point is from the corner of its cell, and its number.
+    /// Offset of each point from the corner of its cell, and its number.
     points: Vec<(f64, f64, u32)>,
 }
 
-/// Where a place is among [`Plates`].
+/// Position of a place among [`Plates`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plate {
-    /// Of the plate, a number from 0 to 1.
+    /// Random number of the plate, 0 to 1.
     pub(crate) own: f64,
-    /// Of the border that is nearest, the same from both of its sides.
+    /// Random number of the nearest border, the same from both of its sides.
     pub(crate) border: f64,
     /// Distance from that border, in widths of the tile.
     pub(crate) edge: f64,
-    /// How upright that border is: 1 along v, 0 across it.
+    /// Direction of that border: 1 along v, 0 across it.
     pub(crate) upright: f64,
 }
 
 impl Plates {
-    /// `grid`: plates across and along, at least 3 each; along an even number. `jitter` 0 is a regular lattice.
+    /// Lays out plates. `grid`: their numbers across and along, at least 3 each; an even number along. `jitter` 0 is a
+    /// regular lattice.
     pub(crate) fn new(grid: (i32, i32), jitter: f64, salt: u32) -> Self {
         let cells = (0..grid.1).flat_map(|j| (0..grid.0).map(move |i| (i, j)));
         let points = cells
@@ -88,8 +90,8 @@ impl Plates {
         Self { grid, points }
     }
 
-    /// The plate at u and v, one turn of the tile each.
-    pub(crate) fn at(&self, u: f64, v: f64) -> Plate {
+    /// Returns the plate at u and v, one turn of the tile each.
+    pub(crate) fn plate_at(&self, u: f64, v: f64) -> Plate {
         let (nx, ny) = (f64::from(self.grid.0), f64::from(self.grid.1));
         let (x, y) = (u * nx, v * ny);
         let j = floor(y);
@@ -118,7 +120,7 @@ impl Plates {
             if k == first {
                 continue;
             }
-            // The line half way between both points; its distance as it is on the tile, where cells are not square.
+            // The line half way between both points; its distance as measured on the tile, where cells are not square.
             let (ax, ay) = (px - ox, py - oy);
             let off = 0.5 * ((px + ox) * ax + (py + oy) * ay);
             let (gx, gy) = (ax * nx, ay * ny);
@@ -137,10 +139,11 @@ impl Plates {
     }
 }
 
-/// Short strokes across a tile, one in a cell at most: the distance from the nearest, 0 in its middle and 1 at its edge.
+/// Returns the distance from the nearest of short strokes across a tile, at most one per cell: 0 in its middle and 1 at
+/// its edge.
 ///
-/// `of` gives of a cell's number (0 to 1) half of a stroke's length and of its thickness in cells, at most 1 and 0.5; none
-/// for a cell without a stroke.
+/// `of` maps a cell's number (0 to 1) to half of a stroke's length and of its thickness in cells, at most 1 and 0.5;
+/// `None` for a cell without a stroke.
 pub(crate) fn strokes(
     (x, y): (f64, f64),
     grid: (i32, i32),
@@ -162,19 +165,19 @@ pub(crate) fn strokes(
     nearest.sqrt()
 }
 
-/// A number in \[0, 1) for an integer.
+/// Returns a number in \[0, 1) for an integer.
 pub(crate) fn random(k: i32, salt: u32) -> f64 {
     unit(hash(k, 77, salt))
 }
 
-/// Of a small number. `f64::floor` is a call into a library on processors without SSE 4.1.
+/// Rounds a small number down. `f64::floor` is a call into a library on processors without SSE 4.1.
 fn floor(x: f64) -> i32 {
     #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
     let toward_zero = x as i32;
     toward_zero - i32::from(f64::from(toward_zero) > x)
 }
 
-/// A cell within the tile. Most are already: a remainder costs more than the rest of the noise.
+/// Wraps a cell into the tile. Most are already: a remainder costs more than the rest of the noise.
 fn wrap(k: i32, n: i32) -> i32 {
     if (0..n).contains(&k) { k } else { k.rem_euclid(n) }
 }

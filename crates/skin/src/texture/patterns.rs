@@ -1,4 +1,4 @@
-//! Materials that a person chose: v from the tip (0) down to the root (1); u across with the midrib at one half, or, for
+//! Materials that a user chose: v from the tip (0) down to the root (1); u across with the midrib at one half, or, for
 //! patterns of the margin, from the margin (0) to the middle (1).
 
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,10 +11,10 @@ use super::noise::{cells, gradient, octaves};
 use super::{Paint, canvas, mix, shade};
 use crate::material::{OrganMaterial, Pattern};
 
-/// Painted textures that are kept: more than a person looks at in a sitting would be in the way.
+/// Most painted textures that are kept: more than a user sees in a session would waste memory.
 const KEPT: usize = 32;
 
-/// What a painting depends on.
+/// Everything on which a painting depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     pattern: Pattern,
@@ -23,8 +23,8 @@ struct Key {
     size: (u32, u32),
 }
 
-/// The texture of a material that is no picture, painted on first use (up to about 30 ms on one thread). The last 32 are
-/// kept.
+/// Returns the texture of a material that is not a picture, painted on first use (up to about 30 ms on one thread). The
+/// last 32 are kept.
 pub(crate) fn painted(material: &OrganMaterial, executor: &dyn Executor) -> Arc<Texture> {
     static PAINTED: Mutex<Vec<(Key, Arc<Texture>)>> = Mutex::new(Vec::new());
     let size = if material.pattern == Pattern::Veined { (256, 512) } else { (128, 256) };
@@ -50,16 +50,17 @@ pub(crate) fn paint(
     (width, height): (u32, u32),
     executor: &dyn Executor,
 ) -> Texture {
-    canvas(executor, width, height, &|u, v| at(material, u, v))
+    canvas(executor, width, height, &|u, v| colour_at(material, u, v))
 }
 
-/// A petal in this material on nothing, tip up; a picture as if it were plain. To choose materials by.
+/// Paints a petal in this material on a transparent ground, tip up; a picture as if it were plain. For choosing
+/// materials.
 ///
 /// `width` and `height` in pixels, each at least 1. Cost: about 100 ns a pixel.
 pub fn swatch(material: &OrganMaterial, width: u32, height: u32, executor: &dyn Executor) -> Texture {
     let mut texture = canvas(executor, width.max(1), height.max(1), &|u, v| {
         let (inner, _) = within(u, v);
-        at(material, if material.pattern.follows_margin() { inner } else { u }, v)
+        colour_at(material, if material.pattern.follows_margin() { inner } else { u }, v)
     });
     let (width, height) = (f64::from(texture.width), f64::from(texture.height));
     for (k, pixel) in (0_u32..).zip(texture.pixels.chunks_exact_mut(4)) {
@@ -70,7 +71,8 @@ pub fn swatch(material: &OrganMaterial, width: u32, height: u32, executor: &dyn 
     texture
 }
 
-/// In the outline of the swatch's petal: how far from its margin, 0 to 1, and how far inside as a share of its width.
+/// Returns, for a point in the outline of the swatch's petal, the distance from its margin, 0 to 1, and the depth
+/// inside as a share of its width.
 fn within(u: f64, v: f64) -> (f64, f64) {
     let (x, y) = ((2.0 * u - 1.0).abs(), 1.0 - v);
     // Widest at two thirds, on a narrow claw.
@@ -79,8 +81,8 @@ fn within(u: f64, v: f64) -> (f64, f64) {
     ((inside / 0.96).clamp(0.0, 1.0), 0.5 * inside)
 }
 
-/// The colour at a place.
-fn at(material: &OrganMaterial, u: f64, v: f64) -> Paint {
+/// Returns the colour at a place.
+fn colour_at(material: &OrganMaterial, u: f64, v: f64) -> Paint {
     let amount = if material.amount.is_finite() { material.amount.clamp(0.0, 1.0) } else { 0.5 };
     let (first, second) = (material.color.srgb(), material.second.srgb());
     let leaf = LeafInks { dark: shade(first, 0.88), light: shade(first, 1.06), vein: second };
@@ -95,7 +97,7 @@ fn at(material: &OrganMaterial, u: f64, v: f64) -> Paint {
     }
 }
 
-/// One colour, hardly uneven, as tissue is.
+/// Paints one colour, slightly uneven, like tissue.
 fn body(color: Paint, u: f64, v: f64) -> Paint {
     shade(color, 1.0 + 0.05 * octaves(4.0 * u, 6.0 * v, (4, 6), 3, 3))
 }
@@ -126,7 +128,7 @@ fn speckled(first: Paint, second: Paint, amount: f64, (u, v): (f64, f64)) -> Pai
     // Cells twice as long as they are wide on the sheet are round on a petal.
     let (near, next) = cells(10.0 * u, 16.0 * v, (10, 16), 44);
     let wanted = (0.10 + 0.42 * amount) * (1.15 - 0.75 * y);
-    // Not every cell has a spot, and none at the very tip.
+    // Some cells have no spot, and none is at the very tip.
     let some = gradient(4.0 * u, 7.0 * v, (4, 7), 45);
     let alive = ops::smoothstep(-0.35, 0.1, some + amount - 0.35) * (1.0 - ops::smoothstep(0.8, 0.97, y));
     let size = wanted * alive;
@@ -138,7 +140,7 @@ fn speckled(first: Paint, second: Paint, amount: f64, (u, v): (f64, f64)) -> Pai
 fn picotee(first: Paint, second: Paint, amount: f64, (inner, v): (f64, f64)) -> Paint {
     let wave = 0.35 * gradient(1.0, 16.0 * v, (4, 16), 46) + 0.25 * gradient(1.5, 41.0 * v, (4, 41), 47);
     let edge = (0.03 + 0.75 * amount) * (1.0 + wave);
-    // Nothing is left of it where there is to be none.
+    // It vanishes completely at amount 0.
     let rim = (1.0 - ops::smoothstep(0.55 * edge, edge, inner)) * ops::smoothstep(0.0, 0.04, amount);
     let flush = 0.22 * (1.0 - ops::smoothstep(edge, 2.4 * edge, inner));
     mix(body(first, inner, v), second, rim.max(flush * amount))

@@ -1,4 +1,4 @@
-//! A surface by its places -> colour, normals, occlusion and roughness, height.
+//! Paints a surface, given by its places, as colour, normals, occlusion and roughness, height.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,29 +7,29 @@ use mesh::{Maps, Texture};
 
 use super::{Paint, byte};
 
-/// What a surface is like at one place.
+/// Properties of a surface at one place.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Spot {
-    /// Over the lowest place, 0 to 1.
+    /// Height over the lowest place, 0 to 1.
     pub(super) height: f64,
     pub(super) paint: Paint,
     pub(super) rough: f64,
-    /// How much of the light of a thin blade goes through, 0 to 1.
+    /// Share of the light that a thin blade transmits, 0 to 1.
     pub(super) through: f64,
 }
 
 /// The sheet on which a surface is painted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheet {
-    /// Pixels.
+    /// Size in pixels.
     pub(super) size: (u32, u32),
-    /// Across and down, in one unit of length.
+    /// Extent across and down, in one unit of length.
     pub(super) extent: (f64, f64),
-    /// What a height of 1 is in that unit.
+    /// Depth that corresponds to a height of 1, in that unit.
     pub(super) depth: f64,
-    /// It goes on at its edges as it begins: bark.
+    /// Whether it repeats at its edges: bark.
     pub(super) tiles: bool,
-    /// The colour that it has on the whole.
+    /// Mean colour that the result must have.
     pub(super) mean: Option<Paint>,
 }
 
@@ -40,12 +40,12 @@ pub(crate) struct Surface {
     pub(crate) maps: Maps,
 }
 
-/// Bytes of painted surfaces that are kept: those of the trees of a sitting at their ordinary size.
+/// Bytes of painted surfaces that are kept: those of the trees of a session at their ordinary size.
 const KEPT: usize = 96 << 20;
 
 impl Surface {
-    /// The surface of this content, painted once and kept, if it was painted to its end; the oldest go where there are too
-    /// many.
+    /// Returns the surface of this content, painted once and kept, if it was painted to its end; the oldest are dropped
+    /// if there are too many.
     pub(crate) fn kept(
         content: Digest,
         paint: impl FnOnce() -> Result<Self, Cancelled>,
@@ -75,8 +75,8 @@ impl Surface {
 /// Rows that one job paints: about a millisecond.
 const ROWS: u32 = 8;
 
-/// Paints a surface; `at(u, v)` says what it is like, u to the right and v down, 0 to 1 each. The same bits for any
-/// executor. `thin`: light goes through it.
+/// Paints a surface; `at(u, v)` returns its properties, u to the right and v down, 0 to 1 each. The same bits for any
+/// executor. `thin`: it transmits light.
 pub(super) fn surface(
     run: &Run<'_>,
     sheet: &Sheet,
@@ -89,7 +89,7 @@ pub(super) fn surface(
         let mut spots = Vec::with_capacity((width * ROWS) as usize);
         for j in first..height.min(first.saturating_add(ROWS)) {
             let v = (f64::from(j) + 0.5) / f64::from(height);
-            spots.extend((0..width).map(|i| Seen::of(at((f64::from(i) + 0.5) / f64::from(width), v))));
+            spots.extend((0..width).map(|i| Seen::from_spot(at((f64::from(i) + 0.5) / f64::from(width), v))));
         }
         spots
     })?;
@@ -131,7 +131,7 @@ pub(super) fn surface(
     Ok(Surface { color: Arc::new(Texture { width, height, pixels: color }), maps })
 }
 
-/// A place as it is kept between the two passes.
+/// A place as stored between the two passes.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     height: f32,
@@ -141,7 +141,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(spot: Spot) -> Self {
+    fn from_spot(spot: Spot) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "0 to 1, and ends as bytes")]
         let narrow = |x: f64| x as f32;
         Self {
@@ -153,7 +153,7 @@ impl Seen {
     }
 }
 
-/// RGBA, moved to the mean that is wanted.
+/// Returns RGBA, shifted to the requested mean.
 fn colored(spots: &[Seen], sheet: &Sheet) -> Vec<u8> {
     #[expect(clippy::cast_precision_loss, reason = "a count of pixels")]
     let count = spots.len().max(1) as f64;
@@ -170,7 +170,7 @@ fn colored(spots: &[Seen], sheet: &Sheet) -> Vec<u8> {
     spots.iter().flat_map(pixel).collect()
 }
 
-/// Cells of the coarser heights that places are compared with.
+/// Cells of the coarser heights with which places are compared.
 const CELLS: [usize; 2] = [128, 32];
 
 struct Heights {
@@ -204,7 +204,7 @@ impl Heights {
         Self { fine, size, tiles: sheet.tiles, coarse }
     }
 
-    fn beside(&self, x: usize, y: usize, (dx, dy): (isize, isize)) -> f64 {
+    fn neighbour(&self, x: usize, y: usize, (dx, dy): (isize, isize)) -> f64 {
         let step = |x: usize, d: isize, n: usize| {
             let to = x.checked_add_signed(d);
             match to {
@@ -216,9 +216,9 @@ impl Heights {
         f64::from(self.fine[step(y, dy, self.size.1) * self.size.0 + step(x, dx, self.size.0)])
     }
 
-    /// Red along u, green against v, blue outwards; each -1 to 1.
+    /// Returns a normal, red along u, green against v, blue outwards; each -1 to 1.
     fn normal(&self, x: usize, y: usize, sheet: &Sheet) -> [f64; 3] {
-        let h = |dx, dy| self.beside(x, y, (dx, dy));
+        let h = |dx, dy| self.neighbour(x, y, (dx, dy));
         let across = (h(1, 0) - h(-1, 0)) * f64::from(sheet.size.0) / (2.0 * sheet.extent.0);
         let down = (h(0, 1) - h(0, -1)) * f64::from(sheet.size.1) / (2.0 * sheet.extent.1);
         let (x, y) = (-across * sheet.depth, down * sheet.depth);
@@ -226,16 +226,16 @@ impl Heights {
         [x / length, y / length, 1.0 / length]
     }
 
-    /// How much of the sky is seen: less where the surroundings are higher.
+    /// Returns the visible share of the sky: less where the surroundings are higher.
     fn open(&self, x: usize, y: usize) -> f64 {
         let here = f64::from(self.fine[y * self.size.0 + x]);
-        let at = |k: usize| (self.coarse[k].at(x, y, self.size, self.tiles) - here).max(0.0);
+        let at = |k: usize| (self.coarse[k].height_at(x, y, self.size, self.tiles) - here).max(0.0);
         (1.0 - 0.9 * at(0) - 0.7 * at(1)).clamp(0.25, 1.0)
     }
 }
 
 impl Coarse {
-    fn at(&self, x: usize, y: usize, size: (usize, usize), tiles: bool) -> f64 {
+    fn height_at(&self, x: usize, y: usize, size: (usize, usize), tiles: bool) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "pixels")]
         let place = |x: usize, pixels: usize, cells: usize| {
             let at = (x as f64 + 0.5) * cells as f64 / pixels as f64 - 0.5;

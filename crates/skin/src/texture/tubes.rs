@@ -4,7 +4,7 @@ use super::noise::{gradient, octaves};
 use super::{Paint, mix};
 use base::ops;
 
-/// Green stem with faint ridges along it.
+/// Paints a green stem with faint ridges along it.
 pub(super) fn stem(u: f64, v: f64) -> Paint {
     const DARK: Paint = [0.285, 0.42, 0.15];
     const LIGHT: Paint = [0.47, 0.60, 0.27];
@@ -14,7 +14,7 @@ pub(super) fn stem(u: f64, v: f64) -> Paint {
     mix(DARK, LIGHT, 0.40 + 0.22 * ridge + 0.5 * mottle + 0.12 * fibre)
 }
 
-/// Pale brown root skin with cross wrinkles.
+/// Paints pale brown root skin with cross wrinkles.
 pub(super) fn root(u: f64, v: f64) -> Paint {
     const DARK: Paint = [0.40, 0.30, 0.20];
     const LIGHT: Paint = [0.69, 0.58, 0.44];

@@ -1,4 +1,4 @@
-//! Flat leaf -> a texture coloured by the distance from the veins.
+//! Paints a flat leaf with a texture coloured by the distance from the veins.
 
 use base::{Draw, Executor, Seed, map_indexed, ops::smoothstep};
 use geom::KdTree2;
@@ -9,23 +9,23 @@ use plant::FlatLeaf;
 /// Colours of a leaf, sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeafColours {
-    /// Between the veins.
+    /// Colour between the veins.
     pub blade: [u8; 3],
-    /// On the veins.
+    /// Colour on the veins.
     pub vein: [u8; 3],
-    /// Along the margin.
+    /// Colour along the margin.
     pub margin: [u8; 3],
 }
 
 impl Default for LeafColours {
-    /// A tobacco leaf in full growth.
+    /// Returns the colours of a tobacco leaf in full growth.
     fn default() -> Self {
         Self { blade: [72, 118, 42], vein: [176, 190, 116], margin: [112, 138, 62] }
     }
 }
 
 impl LeafColours {
-    /// The colours of a leaf that has wilted: `wilt` 0 as they are, 1 dry.
+    /// Returns the colours of a wilted leaf: `wilt` 0 unchanged, 1 dry.
     #[must_use]
     pub fn wilted(self, wilt: f64) -> Self {
         let part = if wilt.is_nan() { 0.0 } else { 0.75 * wilt.clamp(0.0, 1.0) };
@@ -38,7 +38,7 @@ impl LeafColours {
     }
 }
 
-/// The veins of a flat leaf as places with a reach: how far their colour spreads.
+/// The veins of a flat leaf as points with a reach, within which their colour spreads.
 struct Veins {
     grid: KdTree2,
     places: Vec<DVec2>,
@@ -46,11 +46,11 @@ struct Veins {
     widest: f64,
 }
 
-/// A texture over the box around the flat leaf, `height` pixels high (16 to 4096), tip at the top.
+/// Paints a texture over the box around the flat leaf, `height` pixels high (16 to 4096), tip at the top.
 ///
-/// Colour runs from that of the veins to that of the blade with the distance from the nearest midrib or side
-/// vein; a net of small veins and an uneven green between come from `seed`. The same bits for any executor.
-/// Cost: linear in pixels.
+/// Colour changes from that of the veins to that of the blade with the distance from the nearest midrib or side vein; a
+/// net of small veins and an uneven green between come from `seed`. The same bits for any executor. Cost: linear in
+/// pixels.
 ///
 /// ```
 /// # use skin::{LeafColours, vein_texture};
@@ -82,7 +82,7 @@ pub fn vein_texture(
             let at = DVec2::new(f64::from(x) + 0.5, f64::from(height) - y as f64 - 0.5);
             let p = min + at * pixel;
             let near = veins.shade(p);
-            let (cell, uneven) = net.at((p - min) / length);
+            let (cell, uneven) = net.wall_at((p - min) / length);
             let margin = edge
                 .nearest(p, 0.03 * length)
                 .map_or(1.0, |k| smoothstep(0.0, 0.03, margin_line[k].distance(p) / length));
@@ -117,7 +117,7 @@ fn veins(flat: &FlatLeaf, length: f64) -> Veins {
 }
 
 impl Veins {
-    /// 1 on a vein, 0 away from all.
+    /// Returns 1 on a vein, 0 away from all.
     fn shade(&self, p: DVec2) -> f64 {
         let mut near = Vec::new();
         self.grid.within(p, self.widest, &mut near);
@@ -131,7 +131,7 @@ impl Veins {
     }
 }
 
-/// The line with points at most `step` apart.
+/// Returns the line with points at most `step` apart.
 fn dense(line: &[DVec2], closed: bool, step: f64) -> Vec<DVec2> {
     let mut out = Vec::new();
     let ends = line.iter().skip(1).chain(line.first().filter(|_| closed));
@@ -157,7 +157,7 @@ struct Net {
 }
 
 impl Net {
-    /// A net over `size` (in lengths of the leaf) with `cells` cells a length.
+    /// Makes a net over `size` (in lengths of the leaf) with `cells` cells per length.
     fn new(seed: Seed, size: DVec2, cells: f64) -> Self {
         let count = |x: f64| index_below((x * cells).ceil(), 400) + 3;
         let (columns, rows) = (count(size.x), count(size.y));
@@ -172,8 +172,8 @@ impl Net {
         Self { columns, rows, points, shades, cells }
     }
 
-    /// How much of a wall there is at a place (in lengths), and the shade of its cell.
-    fn at(&self, p: DVec2) -> (f64, f64) {
+    /// Returns the strength of a wall at a place (in lengths), and the shade of its cell.
+    fn wall_at(&self, p: DVec2) -> (f64, f64) {
         let q = p * self.cells + DVec2::ONE;
         let (i, j) = (index_below(q.x, self.columns - 1), index_below(q.y, self.rows - 1));
         let (mut first, mut second, mut shade) = (f64::INFINITY, f64::INFINITY, 0.5);

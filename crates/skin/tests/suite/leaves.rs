@@ -1,4 +1,4 @@
-//! Leaves of measured veins: counts, resolution, what lies on what.
+//! Leaves of measured veins: counts, resolution, relative positions.
 #![allow(missing_docs, reason = "tests")]
 
 use base::{Report, Run};
@@ -11,7 +11,7 @@ use skin::{KeptShapes, LeafMeshSpec, ShapeMesh, SkinSpec, SurfacePictures, skin_
 
 const SHADE: VeinShade = VeinShade { vein: [0.5; 3], blade: [0.1; 3], reach_m: 0.002 };
 
-/// The mesh of a blade as it was measured.
+/// Returns the mesh of a blade as measured.
 fn meshed(blade: SplineBlade, leaf: LeafMeshSpec) -> ShapeMesh {
     let mut plant = Plant::default();
     let shape = plant.add_shape(Shape::Spline(blade.into()));
@@ -38,7 +38,7 @@ fn meshed(blade: SplineBlade, leaf: LeafMeshSpec) -> ShapeMesh {
     kept.get(shape).expect("meshed").clone()
 }
 
-/// A leaf along +y, x across (mark 1 at +x), side veins rising.
+/// Makes a leaf along +y, x across (mark 1 at +x), side veins rising.
 fn sample(rows: usize, surface: SurfaceKind) -> SplineBlade {
     let row = |i: usize| {
         let y = (rows - 1 - i) as f64 / rows as f64;
@@ -101,7 +101,7 @@ fn a_blade_in_its_frame_is_where_it_was_measured() {
         let tip = local.surface.point(local.middle, 1.0);
         assert!(local.surface.point(local.middle, 0.0).length() < 1e-12);
         assert!(tip.x.abs() + tip.z.abs() < 1e-12 && (tip.y - local.reach()).abs() < 1e-12, "{tip}");
-        assert!(local.surface.at(local.middle, 0.5).normal.unwrap().z > 0.9);
+        assert!(local.surface.point_at(local.middle, 0.5).normal.unwrap().z > 0.9);
         let area = local.area_m2();
         assert!((area / blade.area_m2() - 1.0).abs() < 1e-9 && area > 0.1, "{area}");
     }

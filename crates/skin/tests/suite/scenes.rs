@@ -1,4 +1,4 @@
-//! Plants to look at and to count, made without any drawing.
+//! Plants for looking and counting, made without any drawing.
 #![allow(dead_code, reason = "each test file uses its own scenes")]
 
 use base::{Draw, Executor, Seed, ops};
@@ -19,7 +19,7 @@ impl Executor for Threads {
     }
 }
 
-/// An egg-shaped outline from the origin along +y, `width` at its widest, which is at `belly` of its length.
+/// Returns an egg-shaped outline from the origin along +y, `width` at its widest, which is at `belly` of its length.
 pub(crate) fn outline(length: f64, width: f64, belly: f64, tip: f64) -> Vec<DVec2> {
     let n = 24;
     let half = |t: f64| {
@@ -59,12 +59,12 @@ pub(crate) fn organ(
     Organ { kind, bearer, flower: None, shape, frame, scale: 1.0, paint: Paint::default(), key, source: None }
 }
 
-/// The last node of the plant's newest axis.
+/// Returns the last node of the plant's newest axis.
 fn last_node(p: &Plant) -> NodeId {
     NodeId::new(p.nodes.position.len() - 1)
 }
 
-/// A curved line of `n` points from `a` in direction `d`, bending towards `to`.
+/// Returns a curved line of `n` points from `a` in direction `d`, bending towards `to`.
 pub(crate) fn curve(a: DVec3, d: DVec3, to: DVec3, length: f64, n: usize) -> Vec<DVec3> {
     let step = length / (n - 1) as f64;
     let mut points = vec![a];
@@ -84,7 +84,7 @@ pub(crate) fn set_radii(p: &mut Plant, axis: plant::AxisId, from: f64, to: f64) 
     }
 }
 
-/// A trunk with a thick and a thin side branch, a Y fork at its tip, and a twig.
+/// Makes a trunk with a thick and a thin side branch, a Y fork at its tip, and a twig.
 pub(crate) fn fork() -> Plant {
     let mut p = Plant { name: "fork".into(), ..Plant::default() };
     let trunk = curve(DVec3::ZERO, DVec3::new(0.05, 1.0, 0.0), DVec3::new(-0.1, 1.0, 0.1), 1.0, 12);
@@ -108,7 +108,7 @@ pub(crate) fn fork() -> Plant {
     p
 }
 
-/// A tree of `count` branches, each borne by an earlier one, no leaves.
+/// Makes a tree of `count` branches, each borne by an earlier one, no leaves.
 pub(crate) fn tree(count: usize, kind: AxisKind) -> Plant {
     let mut p = Plant { name: "tree".into(), ..Plant::default() };
     let trunk = curve(DVec3::ZERO, DVec3::Y, DVec3::new(0.2, 1.0, 0.0), 1.0, 16);
@@ -130,7 +130,7 @@ pub(crate) fn tree(count: usize, kind: AxisKind) -> Plant {
     p
 }
 
-/// A daisy-like flower on a stem: `petals` petals, a disc, stamens, two leaves.
+/// Makes a daisy-like flower on a stem: `petals` petals, a disc, stamens, two leaves.
 pub(crate) fn flower(petals: u32) -> Plant {
     let mut p = Plant { name: "flower".into(), ..Plant::default() };
     let line = curve(DVec3::ZERO, DVec3::new(-0.1, 1.0, 0.0), DVec3::new(0.35, 1.0, 0.1), 0.62, 20);
@@ -173,7 +173,7 @@ pub(crate) fn flower(petals: u32) -> Plant {
     p
 }
 
-/// A branch with `count` small leaves.
+/// Makes a branch with `count` small leaves.
 pub(crate) fn leafy(count: usize) -> Plant {
     let mut p = tree(12, AxisKind::Twig);
     p.name = "leafy".into();
@@ -196,7 +196,7 @@ pub(crate) fn leafy(count: usize) -> Plant {
     p
 }
 
-/// Fruits, a drawn red leaf, a cactus-like body with thorns, roots.
+/// Makes fruits, a drawn red leaf, a cactus-like body with thorns, roots.
 pub(crate) fn still_life() -> Plant {
     let mut p = Plant { name: "still life".into(), ..Plant::default() };
     let apple: Vec<DVec2> =

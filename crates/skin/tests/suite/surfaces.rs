@@ -21,8 +21,8 @@ fn part<'a>(model: &'a Model, name: &str) -> &'a TriMesh {
     &model.parts.iter().find(|p| p.name == name).unwrap_or_else(|| panic!("{name} among {names:?}")).mesh
 }
 
-/// Edges, after vertices at one place are taken for one, that do not have exactly one partner running the other
-/// way.
+/// Returns the number of edges, with coincident vertices merged, that do not have exactly one partner in the opposite
+/// direction.
 fn open_edges(mesh: &TriMesh) -> usize {
     let mut places: BTreeMap<[u32; 3], usize> = BTreeMap::new();
     let welded: Vec<usize> = mesh
@@ -52,7 +52,7 @@ fn volume(mesh: &TriMesh) -> f64 {
     six / 6.0
 }
 
-/// The least cosine between a triangle's normal and its corners' normals.
+/// Returns the least cosine between a triangle's normal and its corners' normals.
 fn worst_normal(mesh: &TriMesh) -> f64 {
     let mut worst = 1.0_f64;
     for t in &mesh.triangles {
@@ -110,7 +110,7 @@ fn hard_cases_stay_closed_and_finite() {
         let mesh = tube(points, radii, &TubeSpec::default());
         assert!(!mesh.triangles.is_empty(), "{name}");
         assert_eq!(mesh.validate().collect::<Vec<_>>(), [], "{name}");
-        // An exact reversal lies on itself: welding by place would join the way out to the way back.
+        // An exact reversal lies on itself: welding coincident vertices would join both halves.
         if !matches!(*name, "far away" | "reversal") {
             assert_eq!(open_edges(&mesh), 0, "{name}");
         }
@@ -123,7 +123,7 @@ fn hard_cases_stay_closed_and_finite() {
 
 #[test]
 fn thick_line_that_jitters_does_not_fold() {
-    // A hand's zigzag, finer than the line is thick.
+    // A zigzag of the pen, finer than the line is thick.
     let points: Vec<DVec3> = (0..60)
         .map(|k| DVec3::new(if k % 2 == 0 { 0.01 } else { -0.01 }, 0.01 * f64::from(k), 0.0))
         .collect();
@@ -157,7 +157,7 @@ fn tip_that_goes_on_is_one_tube() {
     p.nodes.radius_m = vec![0.05; 6];
     let model = skinned(&p);
     let mesh = part(&model, "stems");
-    // The only faces that look along the line are the base and the tip: no cap stays inside at the joint.
+    // The only faces across the line are the base and the tip: no cap stays inside at the joint.
     let across = |t: &&[u32; 3]| {
         let [a, b, c] = t.map(|i| mesh.position(i));
         let n = (b - a).cross(c - a).normalize_or_zero();
@@ -206,7 +206,7 @@ fn crown_leaves_are_coarse_but_fold() {
     let p = scenes::leafy(3000);
     let model = skinned(&p);
     let each = part(&model, "leaves").triangles.len() / 3000;
-    // A plain outline with a midrib that can bend; what more there is goes to lobes and needles.
+    // A plain outline with a midrib that can bend; the rest goes to lobes and needles.
     assert!((6..=24).contains(&each), "{each}");
     let colors = &part(&model, "leaves").colors;
     assert_eq!(colors.len(), part(&model, "leaves").positions.len());
@@ -272,7 +272,7 @@ fn paint_is_what_the_maker_says() {
         (part.name.clone(), model.material(part).name.clone(), part.mesh.colors[0])
     };
     let natural = petals(Paint::Natural, [0.9; 3]);
-    // Pale or dark: a colour is taken for what its maker says it is.
+    // Pale or dark: a colour means what its maker set.
     for rgb in [[0.9; 3], [0.95, 0.62, 0.68], [0.01, 0.02, 0.01]] {
         let (part, material, color) = petals(Paint::Tinted, rgb);
         assert_eq!((part.as_str(), material.as_str()), ("petals", "petal"));

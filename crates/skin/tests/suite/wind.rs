@@ -25,7 +25,7 @@ fn blown(p: &Plant) -> Model {
     model
 }
 
-/// A stem of 1 m with a stalk of 0.08 m.
+/// Makes a stem of 1 m with a stalk of 0.08 m.
 fn stalked() -> Plant {
     let mut p = Plant { name: "stalked".into(), ..Plant::default() };
     p.add_axis(AxisKind::Stem, None, 1, &[DVec3::ZERO, DVec3::Y * 0.5, DVec3::Y], None);
@@ -35,7 +35,7 @@ fn stalked() -> Plant {
     p
 }
 
-/// A trunk of 1 m with a branch of 2 m.
+/// Makes a trunk of 1 m with a branch of 2 m.
 fn spread() -> Plant {
     let mut p = Plant { name: "spread".into(), ..Plant::default() };
     p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 0.5, DVec3::Y], None);
@@ -144,7 +144,7 @@ fn pieces(mesh: &TriMesh) -> Vec<Piece> {
     all
 }
 
-/// The nearest point of a triangle, as its corners' shares.
+/// Returns the nearest point of a triangle, as its corners' shares.
 fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 3]) {
     let on = |a: DVec3, b: DVec3| {
         let d = b - a;
@@ -164,7 +164,7 @@ fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 3]) {
     best.map_or((f64::MAX, [1.0, 0.0, 0.0]), |w| (far(&w), w))
 }
 
-/// What the mesh has at the point of `pieces` nearest to `p`.
+/// Attributes of the mesh at the point of `pieces` nearest to `p`.
 #[derive(Clone, Copy)]
 struct There {
     /// Sway of the plant and of the limb.
@@ -173,7 +173,7 @@ struct There {
     far: f64,
 }
 
-fn at(mesh: &TriMesh, pieces: &[&Piece], p: DVec3) -> There {
+fn wind_at(mesh: &TriMesh, pieces: &[&Piece], p: DVec3) -> There {
     let mut best = There { sway: [0.0; 2], phase: 0.0, far: f64::MAX };
     for t in pieces.iter().flat_map(|piece| &piece.triangles) {
         let (far, shares) = nearest(p, t.map(|i| mesh.position(i)));
@@ -186,7 +186,7 @@ fn at(mesh: &TriMesh, pieces: &[&Piece], p: DVec3) -> There {
     best
 }
 
-/// All wood of a model as one mesh.
+/// Returns all wood of a model as one mesh.
 fn wood(model: &Model) -> TriMesh {
     let mut all = TriMesh::default();
     for part in model.parts.iter().filter(|p| is_wood(model, p)) {
@@ -205,13 +205,13 @@ fn a_foot_goes_with_its_bearer() {
         let pieces = pieces(&mesh);
         for (k, piece) in pieces.iter().enumerate() {
             let first = piece.vertices.start;
-            // The foot's row ends where it began; a tube on the ground begins with the middle of its base.
+            // The foot's row ends at its start; a tube on the ground begins with the centre of its base.
             let mut row = piece.vertices.clone().skip(1);
             let Some(width) = row.position(|i| mesh.positions[i] == mesh.positions[first]) else { continue };
             let others: Vec<&Piece> =
                 pieces.iter().enumerate().filter(|&(i, _)| i != k).map(|(_, p)| p).collect();
             for i in first..=first + width {
-                let there = at(&mesh, &others, DVec3::from(mesh.positions[i].map(f64::from)));
+                let there = wind_at(&mesh, &others, DVec3::from(mesh.positions[i].map(f64::from)));
                 let own = mesh.wind[i];
                 for c in 0..2 {
                     let off = (f64::from(own[c]) - there.sway[c]).abs();
@@ -256,7 +256,7 @@ fn leaves_stay_on_their_twigs() {
     for leaf in self::pieces(leaves) {
         let first = leaf.vertices.start;
         let root = DVec3::from(leaves.pivots[first].map(f64::from));
-        let There { sway, phase, far } = at(&mesh, &all, root);
+        let There { sway, phase, far } = wind_at(&mesh, &all, root);
         let (mut still, mut most) = (f32::MAX, 0.0_f32);
         for i in leaf.vertices.clone() {
             let w = leaves.wind[i];
@@ -319,7 +319,8 @@ fn joints_sway_as_the_columns_say_and_come_back() {
         };
         assert!(rig.fits(&model), "{}", p.name);
         assert!(rig.moves.iter().all(|m| m.first() == m.last()), "{}: no loop", p.name);
-        // Nothing tears: vertices at one place, in whatever part, move alike to a hundredth of the gust, as their columns do.
+        // Nothing tears: coincident vertices, in whatever part, move alike to a hundredth of the gust, as their columns
+        // do.
         let mut seen: std::collections::BTreeMap<[i64; 3], (DVec3, [f32; 4])> =
             std::collections::BTreeMap::new();
         for (part, holds) in model.parts.iter().zip(&rig.holds) {

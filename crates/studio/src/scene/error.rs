@@ -1,4 +1,4 @@
-//! Why a scene could not be made.
+//! Reasons why a scene could not be made.
 
 use base::{Cancelled, OverBudget, Stopped};
 use formats::LeafFileError;
@@ -8,7 +8,7 @@ use crate::make::MakeError;
 use crate::opening::OpeningError;
 use crate::trees::TreeError;
 
-/// Why a plant of a scene could not be made.
+/// Reason why a plant of a scene could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -33,10 +33,10 @@ pub enum SceneError {
     /// The plant whose leaf is borne has no leaf.
     #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
     Lender(String),
-    /// A coarser copy was asked for of what is not made.
+    /// A coarser copy was requested of a plant that is not made.
     #[error("the plant \"{0}\" has not been made yet")]
     NotMade(String),
-    /// The plants that are shown already take as many bytes as they may.
+    /// The plants that are shown already take as many bytes as allowed.
     #[error(
         "there is no room for it: the plants of this scene already take {} MB of memory; hide or delete some of them",
         .0 >> 20
@@ -45,13 +45,13 @@ pub enum SceneError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// It would have been too much.
+    /// The result would exceed the budget.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
 }
 
 impl SceneError {
-    /// Whether it is no fault: the person asked to stop.
+    /// Whether it is not a fault: the person asked to stop.
     pub fn is_cancelled(&self) -> bool {
         matches!(
             self,
@@ -63,7 +63,7 @@ impl SceneError {
         )
     }
 
-    /// Whether there is nothing to be made yet: an empty sheet.
+    /// Whether there is nothing to make yet: an empty sheet.
     pub fn is_bare(&self) -> bool {
         matches!(self, Self::Sketch(MakeError::NoStrokes { .. }))
     }

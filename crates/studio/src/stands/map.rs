@@ -4,7 +4,8 @@ use forest::Stand;
 use glam::DVec3;
 use mesh::Texture;
 
-/// Colours of species, sRGB, in their order and again from the start (Okabe and Ito 2008, and darker ones of the same).
+/// Colours of species, sRGB, in their order and again from the start (Okabe and Ito 2008, and darker versions of
+/// these).
 pub const SPECIES_COLOURS: [[u8; 3]; 12] = [
     [0, 158, 115],
     [230, 159, 0],
@@ -22,10 +23,10 @@ pub const SPECIES_COLOURS: [[u8; 3]; 12] = [
 const PAPER: [u8; 3] = [250, 249, 244];
 /// Share of the picture that is left free at each edge.
 const EDGE: f64 = 0.03;
-/// Crowns are no smaller than this, pixels.
+/// Least radius of a crown, pixels.
 const LEAST: f64 = 0.6;
 
-/// Crowns from above, north up, the tallest over the others, coloured by species: a square of `size` pixels.
+/// Draws crowns from above, north up, the tallest over the others, coloured by species: a square of `size` pixels.
 ///
 /// Cost: linear in the pixels of crowns.
 pub fn stand_map(stand: &Stand, size: u32) -> Texture {
@@ -55,7 +56,7 @@ pub fn stand_map(stand: &Stand, size: u32) -> Texture {
     Texture { width: size, height: size, pixels }
 }
 
-/// A disc with a darker edge.
+/// Draws a disc with a darker edge.
 fn disc(pixels: &mut [u8], size: u32, (x, y, radius): (f64, f64, f64), colour: [u8; 3]) {
     let last = f64::from(size - 1);
     let range = |c: f64| {

@@ -4,13 +4,13 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `nursery` | which plants are grown for a stand, how thick they are, their meshes |
-//! | `placed` | which of them stands for a tree, turned and scaled |
-//! | `tiling` | the quadtree: which trees are in a tile, at which level of detail |
-//! | `plan` | a stand with all that decides its tiles |
-//! | `tile_folder` | the files of a tileset: what is there stays, what is missing is made |
+//! | `nursery` | the plants that are grown for a stand, their thickness, their meshes |
+//! | `placed` | the plant that stands for a tree, turned and scaled |
+//! | `tiling` | the quadtree: the trees of a tile, and its level of detail |
+//! | `plan` | a stand with all that determines its tiles |
+//! | `tile_folder` | the files of a tileset: existing ones stay, missing ones are made |
 //! | `tile_models`, `tile_writer` | the plants' own files; tiles, tileset, table, one file of all |
-//! | `stand_source` | where stands come from: reports, ground and masks of files |
+//! | `stand_source` | sources of stands: reports, ground and masks of files |
 //! | `map` | a plan of a stand as a picture |
 
 mod map;

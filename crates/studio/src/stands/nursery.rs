@@ -1,27 +1,29 @@
-//! Which plants are grown for a stand, how thick they are, and their meshes.
+//! The plants that are grown for a stand, their thickness, and their meshes.
 
 use base::{Report, Run, Seed, Stopped, map_until_cancelled, ops};
 use forest::{Stand, Tree};
 use growth::TreeSpec;
 use mesh::Model;
+use skin::Shoots;
 
 use super::placed::{Placed, place};
 use super::variant::{BREAST_M, Variant};
 use crate::trees::{TreeError, TreeOptions, grow_plant, mesh_plant};
 
-/// Ages at which a species is grown, as shares of the years of its spec: a tree gets the one whose height is nearest to its own.
+/// Ages at which a species is grown, as shares of the years of its spec: a tree gets the one whose height is nearest to
+/// its own.
 const AGES: [f64; 4] = [1.0, 0.5, 0.25, 0.12];
-/// Views along a side of an atlas, and the height in pixels for which the first coarser level is made; each further one is for half
-/// of it.
+/// Number of views along a side of an atlas.
 const VIEWS: u32 = 8;
+/// Height in pixels for which the first coarser level is made; each further one is for half of it.
 const PIXELS: u32 = 192;
 
-/// Which plants are grown.
+/// Selection of the plants that are grown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NurserySpec {
-    /// Plants of each species and age that the stand has, 1 to 64; fewer where it has fewer trees. Default 4.
+    /// Number of plants of each species and age in the stand, 1 to 64; fewer where it has fewer trees. Default 4.
     pub variants: u32,
-    /// What they are grown from.
+    /// Seed from which they are grown.
     pub seed: Seed,
 }
 
@@ -31,7 +33,7 @@ impl Default for NurserySpec {
     }
 }
 
-/// How plants of a nursery are meshed.
+/// Settings for meshing plants of a nursery.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NurseryLook {
     /// Fineness, textures, foliage.
@@ -40,18 +42,18 @@ pub struct NurseryLook {
     pub finest: u32,
     /// The coarsest level of meshes, 0 to 6.
     pub lods: u32,
-    /// One more level of views from all sides, in an atlas of so many pixels a side.
+    /// Side in pixels of an atlas of views from all sides, as one more level.
     pub impostor: Option<u32>,
 }
 
 impl NurseryLook {
-    /// Levels that plants are meshed at, at least one.
+    /// Returns the number of levels at which plants are meshed, at least one.
     pub fn levels(&self) -> u32 {
         self.lods.saturating_sub(self.finest) + 1 + u32::from(self.impostor.is_some())
     }
 }
 
-/// Why a plant of a stand was not made.
+/// Reason why a plant of a stand was not made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NurseryError {
     /// One of the species cannot be grown.
@@ -59,18 +61,18 @@ pub enum NurseryError {
     Species {
         /// Its name in the stand.
         species: String,
-        /// Why.
+        /// The reason.
         error: Box<TreeError>,
     },
     /// The stand names more species than there are specs.
     #[error("the stand has {species} species, and {specs} specs were given")]
     Specs {
-        /// Of the stand.
+        /// Number of species in the stand.
         species: usize,
-        /// Given.
+        /// Number of specs given.
         specs: usize,
     },
-    /// The user asked to stop, or it would have been too much.
+    /// The user asked to stop, or the result would exceed the budget.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -82,7 +84,7 @@ impl From<base::Cancelled> for NurseryError {
 }
 
 impl NurseryError {
-    fn of(species: &str, error: TreeError) -> Self {
+    fn from_tree_error(species: &str, error: TreeError) -> Self {
         match error {
             TreeError::Cancelled(c) => Self::Stopped(Stopped::Cancelled(c)),
             error => Self::Species { species: species.to_owned(), error: Box::new(error) },
@@ -90,11 +92,11 @@ impl NurseryError {
     }
 }
 
-/// The plants of a stand: grown, measured and thrown away again; they are grown anew when they are meshed.
+/// Plants of a stand: grown, measured and discarded; they are grown anew when they are meshed.
 ///
-/// Each species is grown at up to four ages of the life that its spec tells, each age in `variants` individuals, as the trees of
-/// the stand need them. Stems are made thicker or thinner (the exponent of their pipe model changes, twigs stay) so that the k-th
-/// of n individuals has the slenderness of the k-th n-th of its trees.
+/// Each species is grown at up to four ages of the life in its spec, each age in `variants` individuals, as the trees
+/// of the stand need them. Stems are made thicker or thinner (the exponent of their pipe model changes, twigs stay) so
+/// that the k-th of n individuals has the slenderness of the k-th n-th of its trees.
 #[derive(Clone, Debug)]
 pub struct Nursery {
     names: Vec<String>,
@@ -102,14 +104,23 @@ pub struct Nursery {
     seed: Seed,
     /// Heights of the first individual of each species at its ages.
     heights: Vec<Vec<f64>>,
-    /// Sorted by species, age and number.
+    /// Variants, sorted by species, age and number.
     variants: Vec<Variant>,
     /// First row and number of variants, by species and age.
     rows: Vec<Vec<(u32, u32)>>,
+    /// The shoots of the first individual of each species, which all of its plants show where they fit: one atlas for all.
+    painted: Vec<Option<Shoots>>,
+}
+
+/// A plant that was grown, measured and thrown away.
+struct Seedling {
+    variant: Variant,
+    /// Shoots of the oldest first individual of a species.
+    shoots: Option<Shoots>,
 }
 
 impl Nursery {
-    /// Grows what a stand needs; `specs`: of its species, in their order. The same bits for any executor.
+    /// Grows the plants that a stand needs; `specs`: of its species, in their order. The same bits for any executor.
     ///
     /// Cost: one growth for each species and age, and one for each variant; no meshes.
     ///
@@ -131,6 +142,7 @@ impl Nursery {
             heights: Vec::new(),
             variants: Vec::new(),
             rows: vec![Vec::new(); stand.species.len()],
+            painted: vec![None; stand.species.len()],
         };
         let ages: Vec<(u16, u8)> = (0_u16..)
             .zip(&specs[..stand.species.len()])
@@ -140,8 +152,10 @@ impl Nursery {
             .collect();
         let firsts = nursery.grow_all(&ages.iter().map(|&(s, a)| (s, a, 0)).collect::<Vec<_>>(), run)?;
         nursery.heights = vec![Vec::new(); stand.species.len()];
-        for first in &firsts {
-            nursery.heights[usize::from(first.species)].push(first.height_m);
+        for Seedling { variant, shoots } in firsts {
+            let species = usize::from(variant.species);
+            nursery.heights[species].push(variant.height_m);
+            nursery.painted[species] = shoots.or(nursery.painted[species].take());
         }
         // Trees of each species and age.
         let mut groups: Vec<Vec<Vec<u32>>> =
@@ -158,7 +172,7 @@ impl Nursery {
                 wanted.extend((0..count).map(|n| (s, a, n)));
             }
         }
-        nursery.variants = nursery.grow_all(&wanted, run)?;
+        nursery.variants = nursery.grow_all(&wanted, run)?.into_iter().map(|s| s.variant).collect();
         for variant in &mut nursery.variants {
             let trees = &groups[usize::from(variant.species)][usize::from(variant.age)];
             let count = nursery.rows[usize::from(variant.species)][usize::from(variant.age)].1;
@@ -174,18 +188,18 @@ impl Nursery {
         Ok(nursery)
     }
 
-    /// All plants.
+    /// Returns all plants.
     pub fn variants(&self) -> &[Variant] {
         &self.variants
     }
 
-    /// The name of a variant's files: `oak-0-2`.
+    /// Returns the name of a variant's files: `oak-0-2`.
     pub fn name(&self, variant: u32) -> String {
         let v = &self.variants[variant as usize];
         let species = &self.names[usize::from(v.species)];
         let stem = species.rsplit(['/', '\\']).next().unwrap_or_default();
         let stem = formats::file_name(stem.strip_suffix(".toml").unwrap_or(stem), "tree");
-        // Two paths may end alike.
+        // Two paths may have the same ending.
         let same = |other: &String| {
             let other = other.rsplit(['/', '\\']).next().unwrap_or_default();
             let other = other.strip_suffix(".toml").unwrap_or(other);
@@ -196,7 +210,8 @@ impl Nursery {
         format!("{stem}{twin}-{}-{}", v.age, v.number)
     }
 
-    /// Which plant stands for a tree, and how. None for a tree of a species that the stand did not have.
+    /// Returns the plant that stands for a tree, and its pose. `None` for a tree of a species that the stand did not
+    /// have.
     pub fn place(&self, tree: &Tree) -> Option<Placed> {
         let heights = self.heights.get(usize::from(tree.species)).filter(|h| !h.is_empty())?;
         debug_assert!(heights.iter().all(|h| *h > 0.0), "plants are above the ground");
@@ -205,7 +220,7 @@ impl Nursery {
         place(own, tree, self.seed).map(|p| Placed { variant: p.variant + first, ..p })
     }
 
-    /// The meshes of a variant, finest first: grown again, meshed at each level.
+    /// Returns the meshes of a variant, finest first: grown again, meshed at each level.
     ///
     /// # Errors
     /// [`NurseryError`].
@@ -217,7 +232,7 @@ impl Nursery {
     ) -> Result<Vec<Model>, NurseryError> {
         let v = &self.variants[variant as usize];
         let species = &self.names[usize::from(v.species)];
-        let failed = |e: TreeError| NurseryError::of(species, e);
+        let failed = |e: TreeError| NurseryError::from_tree_error(species, e);
         let (spec, seed) = self.individual(v.species, v.age, v.number);
         let mut plant = grow_plant(&spec, seed, run).map_err(failed)?;
         let shoot = plant.shoot();
@@ -229,20 +244,21 @@ impl Nursery {
         let options = TreeOptions { skin: look.skin.clone(), ..TreeOptions::default() };
         // Textures follow from the species, so that its individuals share them.
         let skin_seed = self.species_seed(v.species);
+        let painted = self.painted[usize::from(v.species)].as_ref();
         let mut models = Vec::new();
         for level in look.finest.min(look.lods)..=look.lods.min(6) {
-            let model = mesh_plant(&plant, (&spec, skin_seed), &options, level, run);
+            let model = mesh_plant(&plant, (&spec, skin_seed), &options, (level, painted), run);
             models.push(model.map_err(|e| failed(e.into()))?);
         }
         if let Some(size) = look.impostor {
-            // Of the level that is made for pictures of the size of its views: finer ones look the same and take as much longer.
+            // The level made for pictures of the size of its views: finer ones look the same and take longer.
             let level =
                 (1..=look.lods).rev().find(|l| PIXELS >> (l - 1) >= size / VIEWS).unwrap_or(look.lods.min(1));
             let own = models.get(level.wrapping_sub(look.finest) as usize);
             let made = if own.is_some() {
                 None
             } else {
-                let made = mesh_plant(&plant, (&spec, skin_seed), &options, level, run);
+                let made = mesh_plant(&plant, (&spec, skin_seed), &options, (level, painted), run);
                 Some(made.map_err(|e| failed(e.into()))?)
             };
             if let Some(of) = own.or(made.as_ref())
@@ -256,12 +272,12 @@ impl Nursery {
         Ok(models)
     }
 
-    /// What a stand's plants cannot do: told once, with the numbers.
+    /// Reports in which ways a stand's plants differ from its trees: once, with the numbers.
     pub fn tell(&self, misfits: &super::Misfits, report: &mut Report) {
         misfits.tell(report);
     }
 
-    /// The age whose height is nearest to a tree's.
+    /// Returns the age whose height is nearest to a tree's.
     fn age_of(&self, tree: &Tree) -> usize {
         let heights = &self.heights[usize::from(tree.species)];
         let off = |h: f64| ops::ln(h / tree.height_m.max(0.01)).abs();
@@ -274,7 +290,7 @@ impl Nursery {
         name.fold(self.seed, |seed, byte| seed.child(u64::from(byte)))
     }
 
-    /// What an individual is grown from: of the same number it is the same life at each age.
+    /// Returns the spec and the seed of an individual: one number is the same life at each age.
     fn individual(&self, species: u16, age: u8, number: u32) -> (TreeSpec, Seed) {
         let mut spec = self.specs[usize::from(species)].clone();
         if let Some(years) = spec.years {
@@ -285,21 +301,24 @@ impl Nursery {
         (spec, self.species_seed(species).child(u64::from(number)))
     }
 
-    fn grow_all(&self, wanted: &[(u16, u8, u32)], run: &Run<'_>) -> Result<Vec<Variant>, NurseryError> {
+    fn grow_all(&self, wanted: &[(u16, u8, u32)], run: &Run<'_>) -> Result<Vec<Seedling>, NurseryError> {
         let grown = map_until_cancelled(run, wanted.len(), |k| {
             let (species, age, number) = wanted[k];
             let (spec, seed) = self.individual(species, age, number);
             let alone = Run { executor: &base::Serial, ..*run };
             let plant = grow_plant(&spec, seed, &alone);
             plant
-                .map(|p| Variant::of(&p, wanted[k]))
-                .map_err(|e| NurseryError::of(&self.names[usize::from(species)], e))
+                .map(|p| Seedling {
+                    variant: Variant::measure(&p, wanted[k]),
+                    shoots: if (age, number) == (0, 0) { Shoots::find(&p) } else { None },
+                })
+                .map_err(|e| NurseryError::from_tree_error(&self.names[usize::from(species)], e))
         })?;
         grown.into_iter().collect()
     }
 }
 
-/// How much thicker a variant would have to be to have a tree's diameter; none of a tree without one.
+/// Returns the factor by which a variant has to be thickened to have a tree's diameter; `None` for a tree without one.
 fn wanted_thickness(variant: &Variant, tree: &Tree) -> Option<f64> {
     let (wide, tall) = (tree.crown_width_m / variant.crown_width_m, tree.height_m / variant.height_m);
     let grown = variant.diameter_m(BREAST_M / tall) * wide;

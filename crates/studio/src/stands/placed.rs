@@ -1,4 +1,4 @@
-//! Which plant stands for a tree, turned and scaled.
+//! Choice of the plant that stands for a tree, turned and scaled.
 
 use base::{Draw, Report, Seed, ops, turn};
 use forest::Tree;
@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 
 use super::variant::Variant;
 
-/// How far a plant may be scaled.
+/// Limits for scaling a plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleLimits {
     /// Least and largest scale along the height.
@@ -21,43 +21,44 @@ pub const LIMITS: ScaleLimits = ScaleLimits { tall: [0.4, 2.5], wide: [0.6, 1.7]
 
 /// Breast height, metres.
 const BREAST_M: f64 = 1.3;
-/// What a wrong crown and a wrong height count, in wrong diameters.
+/// Cost of a wrong crown, relative to that of a wrong diameter.
 const CROWN: f64 = 3.0;
+/// Cost of a wrong height, relative to that of a wrong diameter.
 const HEIGHT: f64 = 10.0;
-/// What chance counts among plants that fit as well.
+/// Cost range of chance among plants that fit equally well.
 const CHANCE: f64 = 0.02;
-/// A stem that is further off than this share of its diameter is told of.
+/// Share of the diameter by which a stem must be wrong to be reported.
 const STEM_OFF: f64 = 0.25;
-/// Crowns that lie further from their foot than this share of their width have a side.
+/// Least distance of a crown's middle from its foot, as a share of its width, that makes it one-sided.
 const ONE_SIDED: f64 = 0.04;
 
-/// A plant in the place of a tree.
+/// A plant that stands for a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
     /// Row of [`Nursery::variants`](super::Nursery::variants).
     pub variant: u32,
-    /// How it is turned.
+    /// Rotation of the plant.
     pub turn: DQuat,
-    /// How it is scaled, along its own axes.
+    /// Scale along its own axes.
     pub scale: DVec3,
-    /// Of what is made less what was asked for, metres.
+    /// Height of the plant minus that of the tree, metres.
     pub height_error_m: f64,
-    /// The same of the diameter at breast height; 0 for a tree without one.
+    /// Diameter at breast height of the plant minus that of the tree, metres; 0 for a tree without one.
     pub dbh_error_m: f64,
-    /// The same of the width of the crown.
+    /// Crown width of the plant minus that of the tree, metres.
     pub crown_error_m: f64,
-    /// The limits of scales were in the way.
+    /// Whether a limit of scaling applied.
     pub is_clipped: bool,
 }
 
 impl Placed {
-    /// As a copy whose tree is a row of a table.
+    /// Returns it as a copy whose tree is a row of a table.
     pub fn instance(&self, tree: &Tree, row: u32) -> Instance {
         Instance { at: tree.foot_m, turn: self.turn, scale: self.scale, tree: row }
     }
 }
 
-/// The plant that meets a tree best: height before crown before diameter.
+/// Returns the plant that fits a tree best: height before crown before diameter.
 pub(super) fn place(variants: &[Variant], tree: &Tree, seed: Seed) -> Option<Placed> {
     let mut stream = seed.child(u64::from(tree.row)).stream(Draw::Scatter);
     let mut best: Option<(f64, Placed)> = None;
@@ -93,7 +94,7 @@ fn fit(variant: &Variant, tree: &Tree) -> (Placed, f64) {
     (placed, cost)
 }
 
-/// Upright or leaning as the tree; one-sided crowns of both on the same side.
+/// Returns the rotation: upright or leaning like the tree, with one-sided crowns of both on the same side.
 fn turned(variant: &Variant, tree: &Tree) -> DQuat {
     let side = tree.crown_offset_m.with_y(0.0);
     let is_one_sided = side.length() > ONE_SIDED * tree.crown_width_m
@@ -104,20 +105,20 @@ fn turned(variant: &Variant, tree: &Tree) -> DQuat {
     turn::between(DVec3::Y, tree.up) * turn::about(DVec3::Y, yaw)
 }
 
-/// How far plants are from the trees that they stand for.
+/// Differences between plants and the trees that they stand for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Misfits {
-    /// Trees.
+    /// Number of trees.
     pub trees: u64,
-    /// The largest of each error, metres, without its sign.
+    /// Largest error of a height, metres, without its sign.
     pub height_error_max_m: f64,
-    /// The same.
+    /// Largest error of a diameter at breast height, metres, without its sign.
     pub dbh_error_max_m: f64,
-    /// The same.
+    /// Largest error of a crown width, metres, without its sign.
     pub crown_error_max_m: f64,
     /// The mean of the diameters' errors, metres, without their signs.
     pub dbh_error_mean_m: f64,
-    /// Row of the inventory of the tree with the largest error of its height or crown over what was asked.
+    /// Row in the inventory of the tree with the largest relative error of its height or crown.
     pub worst_row: u32,
     /// Trees whose plants the limits of scales changed.
     pub clipped: u64,
@@ -128,7 +129,7 @@ pub struct Misfits {
 }
 
 impl Misfits {
-    /// Counts one more tree.
+    /// Adds one more tree.
     pub fn add(&mut self, tree: &Tree, placed: &Placed) {
         self.trees += 1;
         self.height_error_max_m = self.height_error_max_m.max(placed.height_error_m.abs());
@@ -145,7 +146,7 @@ impl Misfits {
         }
     }
 
-    /// Says so where trees are not as they were asked for.
+    /// Warns where trees differ from the stand.
     pub fn tell(&self, report: &mut Report) {
         if self.stems_off > 0 {
             let (trees, all, most) = (self.stems_off, self.trees, self.dbh_error_max_m);

@@ -1,4 +1,4 @@
-//! A stand with all that decides its tiles.
+//! A stand with all that determines its tiles.
 
 use std::collections::BTreeSet;
 
@@ -11,26 +11,28 @@ use super::nursery::{Nursery, NurseryError, NurseryLook, NurserySpec};
 use super::placed::Misfits;
 use super::tiling::{StandTile, TileId, Tiling, TilingError, TilingSpec};
 
-/// Pixels of a side of the textures of plants that stand for trees.
+/// Side in pixels of the textures of plants that stand for trees.
 const TEXTURE_SIZE: u32 = 256;
-/// The coarsest level of their meshes, and pixels of a side of the atlas for those far away.
+/// Coarsest level of their meshes.
 const LODS: u32 = 3;
+/// Side in pixels of the atlas for distant trees.
 const IMPOSTOR: u32 = 512;
-/// Trees between two looks at whether the user asked to stop.
+/// Number of trees between two checks of whether the user asked to stop.
 const PATIENCE: usize = 4_096;
 
-/// How a stand becomes tiles.
+/// Settings for turning a stand into tiles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForestTilesSpec {
     /// Plants of each species and age, 1 to 64. Default 4.
     pub variants: u32,
-    /// Of the plants and of their choice.
+    /// Seed of the plants and of their choice.
     pub seed: Seed,
-    /// How plants are meshed. Default: levels 0 to 3 with textures of 256 pixels, and pictures of 512 for those far away.
+    /// Settings for meshing plants. Default: levels 0 to 3 with textures of 256 pixels, and pictures of 512 for distant
+    /// ones.
     pub look: NurseryLook,
     /// Most trees of a tile of the finest level. Default: [`TilingSpec::usual_trees`].
     pub tile_trees: Option<u32>,
-    /// How models and tiles are packed. Default: compressed.
+    /// Packing of models and tiles. Default: compressed.
     pub packing: Packing,
 }
 
@@ -48,7 +50,7 @@ impl Default for ForestTilesSpec {
     }
 }
 
-/// Why a stand did not become tiles.
+/// Reason why a stand did not become tiles.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ForestTilesError {
@@ -61,18 +63,18 @@ pub enum ForestTilesError {
     /// A file of it cannot be made.
     #[error("a file of the forest cannot be made: {0}")]
     Write(#[from] WriteError),
-    /// A plant that is too small for views from all sides.
+    /// A plant is too small for views from all sides.
     #[error("{0} is too small for pictures from all sides; leave them out")]
     TooSmall(String),
-    /// There is no such tile.
+    /// The tile does not exist.
     #[error("there is no tile {asked} in this forest; one of those that there are is {one}")]
     NoTile {
         /// The file that it would have.
         asked: String,
-        /// The file of one that there is.
+        /// The file of one that exists.
         one: String,
     },
-    /// What lies there as a manifest is none.
+    /// The file at the place of the manifest is not one.
     #[error("is not the manifest of a forest; name another folder")]
     NoManifest,
     /// Our own fault.
@@ -99,24 +101,25 @@ pub struct ForestPlan {
     pub stand: Stand,
     /// The plants that stand for them.
     pub nursery: Nursery,
-    /// How it is cut into tiles.
+    /// Its tiles.
     pub tiling: Tiling,
-    /// The same as it was asked for.
+    /// Settings of the tiling.
     pub tiling_spec: TilingSpec,
-    /// How far plants are from the trees that they stand for.
+    /// Differences between plants and the trees that they stand for.
     pub misfits: Misfits,
-    /// How many trees each plant stands for.
+    /// Number of trees that each plant stands for.
     pub trees_of: Vec<u64>,
     spec: ForestTilesSpec,
 }
 
 impl ForestPlan {
-    /// Grows what a stand needs, and cuts it into tiles; `specs`: of its species, in their order. The same bits for any executor.
+    /// Grows the plants that a stand needs, and cuts it into tiles; `specs`: of its species, in their order. The same
+    /// bits for any executor.
     ///
     /// Cost: that of [`Nursery::plan`], and linear in trees.
     ///
     /// # Errors
-    /// [`ForestTilesError`] of species that cannot be grown and of stands that cannot be tiled.
+    /// [`ForestTilesError`] for species that cannot be grown and for stands that cannot be tiled.
     pub fn new(
         stand: Stand,
         specs: &[TreeSpec],
@@ -143,7 +146,7 @@ impl ForestPlan {
         Ok(Self { stand, nursery, tiling, tiling_spec, misfits, trees_of, spec })
     }
 
-    /// How plants are meshed.
+    /// Returns the settings for meshing plants.
     pub const fn look(&self) -> &NurseryLook {
         &self.spec.look
     }
@@ -156,12 +159,12 @@ impl ForestPlan {
         self.spec.seed
     }
 
-    /// Plants that stand for a tree at all, by their rows.
+    /// Returns the rows of plants that stand for at least one tree.
     pub fn used_variants(&self) -> impl Iterator<Item = u32> + '_ {
         (0_u32..).zip(&self.trees_of).filter(|(_, trees)| **trees > 0).map(|(variant, _)| variant)
     }
 
-    /// Plants that a tile shows, by their rows.
+    /// Returns the rows of plants that a tile shows.
     pub fn used_by(&self, tile: &StandTile) -> BTreeSet<u32> {
         let rows = self.tiling.shown(tile, &self.stand, self.spec.seed);
         rows.filter_map(|row| self.nursery.place(&self.stand.trees[row as usize]))
@@ -169,10 +172,10 @@ impl ForestPlan {
             .collect()
     }
 
-    /// The tile of a name.
+    /// Returns the tile of a name.
     ///
     /// # Errors
-    /// [`ForestTilesError::NoTile`] with one that there is.
+    /// [`ForestTilesError::NoTile`] with one that exists.
     pub fn tile(&self, id: TileId) -> Result<&StandTile, ForestTilesError> {
         self.tiling.find(id).ok_or_else(|| ForestTilesError::NoTile {
             asked: id.file(),
@@ -180,7 +183,7 @@ impl ForestPlan {
         })
     }
 
-    /// A fingerprint of what decides every tile: trees, species, options, version. Equal keys, equal tiles.
+    /// Returns a digest of all that determines the tiles: trees, species, options, version. Equal keys, equal tiles.
     pub fn key(&self) -> String {
         let mut digest = Digest::new();
         let head = format!(

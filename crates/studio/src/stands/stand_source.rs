@@ -1,4 +1,4 @@
-//! Where stands come from: what an inventory or a spec gave, and the files that either of them names.
+//! Sources of stands: the contents of an inventory or a spec, and the files that either of them names.
 
 use base::Run;
 use forest::{
@@ -10,22 +10,23 @@ use serde::Serialize;
 
 use crate::NamedMesh;
 
-/// The part of a report about where a stand comes from.
+/// The part of a report about the source of a stand.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StandReport {
-    /// Rows of an inventory, with those left out; none of a stand that grew.
+    /// Rows of an inventory, including those left out; none for a stand that grew.
     pub rows: Option<u32>,
     /// Rows that were left out.
     pub skipped: Option<u32>,
-    /// Trees whose height, diameter, crown and age were given.
+    /// Numbers of trees whose height, diameter, crown and age were given.
     pub given: Option<[u32; 4]>,
-    /// Half the logarithm of high over low of those that were filled, in the mean: 0.3 is an interval from 1/1.35 to 1.35 times.
+    /// Mean half logarithm of the upper over the lower bound of estimated values: 0.3 is an interval from 1/1.35 to
+    /// 1.35 times.
     pub filled_log_interval: Option<[f64; 4]>,
     /// Trees at the place of an earlier one.
     pub duplicates: Option<u32>,
     /// Trees whose trunks touch.
     pub touching: Option<u32>,
-    /// Of a stand that grew: years, trees and square metres of basal area a hectare, after each step.
+    /// For a stand that grew: years, trees and square metres of basal area a hectare, after each step.
     pub history: Vec<[f64; 3]>,
 }
 
@@ -51,18 +52,18 @@ impl From<&GrownStand> for StandReport {
     }
 }
 
-/// A file of the ground or of a mask that cannot be used.
+/// The reason why a file of the ground or of a mask cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SiteError {
-    /// The ground.
+    /// The ground cannot be used.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// A mask.
+    /// A mask cannot be used.
     #[error("mask {file:?}: {error}")]
     Mask {
         /// Its name in the spec.
         file: String,
-        /// Why.
+        /// The reason.
         error: GroundError,
     },
 }
@@ -72,20 +73,21 @@ pub trait SiteFiles {
     /// Errors of the shell.
     type Error: From<SiteError>;
 
-    /// All that is in a file.
+    /// Returns the contents of a file.
     ///
     /// # Errors
-    /// Of a file that is not there, or must not be read.
+    /// Error of a file that does not exist, or must not be read.
     fn bytes(&self, name: &str) -> Result<Vec<u8>, Self::Error>;
 
-    /// The corners and triangles of a model, metres, +Y up.
+    /// Returns the corners and triangles of a model, metres, +Y up.
     ///
     /// # Errors
-    /// Of a file that is no model, is not there, or must not be read.
+    /// Error of a file that is not a model, does not exist, or must not be read.
     fn mesh(&self, name: &str) -> Result<NamedMesh, Self::Error>;
 }
 
-/// Reads a ground. `origin`: easting and northing of the stand's origin in the projection of a GeoTIFF; none: the middle of the map.
+/// Reads a ground. `origin`: easting and northing of the stand's origin in the projection of a GeoTIFF; `None`: the
+/// middle of the map.
 ///
 /// # Errors
 /// [`SiteError`], and those of the files.

@@ -1,4 +1,4 @@
-//! The folder of a tileset: its files come to be one after another, and those that are there already stay.
+//! The folder of a tileset: its files are written one after another, and existing ones stay.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -9,18 +9,19 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::ForestTilesError;
 
-/// Every file of a finished tileset with its digest.
+/// Name of the file that lists every file of a finished tileset with its digest.
 pub const TILES_MANIFEST: &str = "manifest.json";
-/// The same of one that is being written: a line a file.
+/// Name of the same list for an unfinished tileset: one line for each file.
 pub const TILES_JOURNAL: &str = "unfinished.jsonl";
-/// The file that readers open; there as long as all that it names is.
+/// Name of the file that readers open; it exists only while every file that it names does.
 pub const TILESET: &str = "tileset.json";
 /// The value of [`Manifest::schema`].
 const SCHEMA: &str = "burgeon.forest/1";
-/// Files are put in place together up to so many, and so many bytes.
+/// Most files that are put in place together.
 const BATCH: usize = 64;
+/// Most bytes that are put in place together.
 const BATCH_BYTES: usize = 16 << 20;
-/// No manifest is larger; a tile has some 90 bytes in it.
+/// Largest size of a manifest; a tile takes some 90 bytes in it.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// The disk of a shell, below the folder of a tileset. Names of files are paths with `/` from that folder.
@@ -28,34 +29,34 @@ pub trait TileDisk {
     /// Errors of the shell.
     type Error: From<ForestTilesError>;
 
-    /// The bytes of a file, `most` and one more at most; none of what is not there.
+    /// Returns the bytes of a file, at most `most` and one more; `None` for a file that does not exist.
     ///
     /// # Errors
-    /// Of a file that is there and cannot be read.
+    /// Error of a file that exists and cannot be read.
     fn read(&self, file: &str, most: u64) -> Result<Option<Vec<u8>>, Self::Error>;
 
-    /// Puts files in place, all of them or none, with the folders that they need.
+    /// Puts files in place, all of them or none, and makes the folders that they need.
     ///
     /// # Errors
-    /// Of a disk that refuses.
+    /// Error of a disk that refuses.
     fn place(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), Self::Error>;
 
     /// Adds text to the end of a file.
     ///
     /// # Errors
-    /// Of a disk that refuses.
+    /// Error of a disk that refuses.
     fn append(&mut self, file: &str, text: &str) -> Result<(), Self::Error>;
 
     /// Removes a file, if it is there.
     ///
     /// # Errors
-    /// Of a disk that refuses.
+    /// Error of a disk that refuses.
     fn remove(&mut self, file: &str) -> Result<(), Self::Error>;
 
-    /// Writes a file of the last step as it comes. It need not be in place before the shell ends.
+    /// Writes a file of the last step as a stream. It need not be in place before the shell ends.
     ///
     /// # Errors
-    /// Of a disk that refuses, and of `write`.
+    /// Error of a disk that refuses, and of `write`.
     fn write_last(
         &mut self,
         file: &str,
@@ -66,7 +67,7 @@ pub trait TileDisk {
 /// A file as it was written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TileFile {
-    /// From the folder, with `/`.
+    /// Path from the folder, with `/`.
     pub file: String,
     /// The first 32 digits of its SHA-256.
     pub digest: String,
@@ -75,7 +76,7 @@ pub struct TileFile {
 }
 
 impl TileFile {
-    fn of(file: &str, bytes: &[u8]) -> Self {
+    fn new(file: &str, bytes: &[u8]) -> Self {
         let mut digest = Digest::new();
         digest.bytes(bytes);
         Self { file: file.to_owned(), digest: digest.hex(), bytes: bytes.len() as u64 }
@@ -87,7 +88,7 @@ impl TileFile {
 struct Manifest {
     schema: String,
     version: String,
-    /// What it was made from: the trees, their species, the options and the version. Equal keys, equal tiles.
+    /// Digest of its inputs: the trees, their species, the options and the version. Equal keys, equal tiles.
     key: String,
     files: Vec<TileFile>,
 }
@@ -108,25 +109,25 @@ pub struct TileFolder<D> {
     known: BTreeMap<String, TileFile>,
     /// Files of another forest that the folder held.
     stale: Vec<String>,
-    /// All of this run.
+    /// All files of this run.
     files: BTreeMap<String, TileFile>,
     waiting: Vec<(String, Vec<u8>)>,
     waiting_bytes: usize,
-    /// The journal lies there.
+    /// Whether the journal exists there.
     is_open: bool,
-    /// The manifest of this forest lies there: what is missing is made again, and the bytes are those that it says.
+    /// Whether the manifest of this forest exists there: missing files are made again, with the bytes that it lists.
     is_whole: bool,
     kept: u64,
     written: u64,
-    /// Those of the last step.
+    /// Files of the last step.
     last: Vec<TileFile>,
 }
 
 impl<D: TileDisk> TileFolder<D> {
-    /// Looks at what is there. `key`: [`ForestPlan::key`](super::ForestPlan::key).
+    /// Reads the present state of the folder. `key`: [`ForestPlan::key`](super::ForestPlan::key).
     ///
     /// # Errors
-    /// [`ForestTilesError::NoManifest`] of a folder of something else.
+    /// [`ForestTilesError::NoManifest`] for a folder of something else.
     pub fn open(disk: D, key: &str) -> Result<Self, D::Error> {
         let manifest = disk.read(TILES_MANIFEST, MOST_BYTES)?;
         let journal = disk.read(TILES_JOURNAL, MOST_BYTES)?;
@@ -154,7 +155,7 @@ impl<D: TileDisk> TileFolder<D> {
             let text = String::from_utf8_lossy(&journal).into_owned();
             let mut lines = text.lines();
             let head = lines.next().and_then(|l| serde_json::from_str::<Head>(l).ok());
-            // A line that was cut off by the power says nothing.
+            // A line that a power failure cut off is ignored.
             let files = lines.filter_map(|l| serde_json::from_str(l).ok()).collect();
             folder.is_open = head.is_some_and(|h| h.key == key);
             folder.take(folder.is_open, files);
@@ -172,7 +173,7 @@ impl<D: TileDisk> TileFolder<D> {
         }
     }
 
-    /// The bytes of a file that an earlier run wrote whole, which stays.
+    /// Keeps a file that an earlier run wrote in full, and returns its bytes.
     pub(crate) fn keep(&mut self, file: &str) -> Option<Vec<u8>> {
         if let Some((_, bytes)) = self.waiting.iter().find(|(name, _)| name == file) {
             return Some(bytes.clone());
@@ -180,7 +181,7 @@ impl<D: TileDisk> TileFolder<D> {
         let known = self.files.get(file).or_else(|| self.known.get(file))?.clone();
         // A file that cannot be read is made again.
         let bytes = self.disk.read(file, known.bytes).ok().flatten()?;
-        if TileFile::of(file, &bytes) != known {
+        if TileFile::new(file, &bytes) != known {
             return None;
         }
         if self.files.insert(file.to_owned(), known).is_none() {
@@ -194,7 +195,7 @@ impl<D: TileDisk> TileFolder<D> {
         self.files.contains_key(file) || self.waiting.iter().any(|(name, _)| name == file)
     }
 
-    /// Writes a file, soon.
+    /// Queues a file for writing.
     pub(crate) fn put(&mut self, file: &str, bytes: Vec<u8>) -> Result<(), D::Error> {
         if self.has(file) {
             return Ok(());
@@ -204,7 +205,7 @@ impl<D: TileDisk> TileFolder<D> {
         if self.waiting.len() >= BATCH || self.waiting_bytes >= BATCH_BYTES { self.flush() } else { Ok(()) }
     }
 
-    /// Puts all that waits in place, and notes it.
+    /// Puts all queued files in place, and lists them in the journal.
     pub(crate) fn flush(&mut self) -> Result<(), D::Error> {
         if self.waiting.is_empty() {
             return Ok(());
@@ -213,18 +214,18 @@ impl<D: TileDisk> TileFolder<D> {
         let files = std::mem::take(&mut self.waiting);
         self.waiting_bytes = 0;
         self.disk.place(&files)?;
-        let made: Vec<TileFile> = files.iter().map(|(file, bytes)| TileFile::of(file, bytes)).collect();
+        let made: Vec<TileFile> = files.iter().map(|(file, bytes)| TileFile::new(file, bytes)).collect();
         self.written += made.len() as u64;
         self.note(&made)?;
         self.files.extend(made.into_iter().map(|f| (f.file.clone(), f)));
         Ok(())
     }
 
-    /// Takes over files that others have put in place: other processes, other machines. They are noted, and their digests are
-    /// compared with the files when these are needed.
+    /// Takes over files that others have put in place: other processes, other machines. They are listed, and their
+    /// digests are compared with the files when these are needed.
     ///
     /// # Errors
-    /// Of a disk that refuses.
+    /// Error of a disk that refuses.
     pub fn adopt(&mut self, files: Vec<TileFile>) -> Result<(), D::Error> {
         self.begin()?;
         self.note(&files)?;
@@ -232,12 +233,12 @@ impl<D: TileDisk> TileFolder<D> {
         Ok(())
     }
 
-    /// From now on the folder says that it is not finished.
+    /// Marks the folder as unfinished from now on.
     fn begin(&mut self) -> Result<(), D::Error> {
         if self.is_open || self.is_whole {
             return Ok(());
         }
-        // First the journal with what may stay, then what readers open goes.
+        // First the journal with the files that may stay is written, then the file that readers open is removed.
         let head = line(&Head { schema: SCHEMA.into(), key: self.key.clone() })?;
         let known: Vec<String> = self.known.values().map(line).collect::<Result<_, _>>()?;
         let text = head + &known.concat();
@@ -257,7 +258,7 @@ impl<D: TileDisk> TileFolder<D> {
         self.disk.append(TILES_JOURNAL, &lines.concat())
     }
 
-    /// The bytes of a file of this folder.
+    /// Returns the bytes of a file of this folder.
     pub(crate) fn read(&self, file: &str) -> Result<Option<Vec<u8>>, D::Error> {
         self.disk.read(file, u64::MAX - 1)
     }
@@ -277,7 +278,7 @@ impl<D: TileDisk> TileFolder<D> {
         Ok(())
     }
 
-    /// Lays the manifest of all files to those of the last step.
+    /// Adds the manifest of all files to those of the last step.
     pub(crate) fn manifest(&mut self) -> Result<(), D::Error> {
         let files: BTreeMap<&String, &TileFile> =
             self.files.values().chain(&self.last).map(|own| (&own.file, own)).collect();
@@ -291,10 +292,10 @@ impl<D: TileDisk> TileFolder<D> {
         self.disk.write_last(TILES_MANIFEST, &mut |out| Ok(out.write_all(text.as_bytes())?))
     }
 
-    /// Removes the journal, and what is left of another forest: after all is in place.
+    /// Removes the journal, and the remains of another forest, after all files are in place.
     ///
     /// # Errors
-    /// Of a disk that refuses.
+    /// Error of a disk that refuses.
     pub fn end(&mut self) -> Result<(), D::Error> {
         self.disk.remove(TILES_JOURNAL)?;
         for file in std::mem::take(&mut self.stale) {
@@ -306,17 +307,18 @@ impl<D: TileDisk> TileFolder<D> {
         Ok(())
     }
 
-    /// Every file so far.
+    /// Returns every file so far.
     pub fn files(&self) -> impl Iterator<Item = &TileFile> {
         self.files.values().chain(&self.last)
     }
 
-    /// Files that an earlier run wrote and that stay, and those that this one wrote before the last step.
+    /// Returns the numbers of files that an earlier run wrote and that stay, and of those that this one wrote before
+    /// the last step.
     pub const fn kept_and_written(&self) -> (u64, u64) {
         (self.kept, self.written)
     }
 
-    /// The disk.
+    /// Returns the disk.
     pub const fn disk(&mut self) -> &mut D {
         &mut self.disk
     }
@@ -327,14 +329,14 @@ fn line(value: &impl Serialize) -> Result<String, ForestTilesError> {
     Ok(text + "\n")
 }
 
-/// A file of a manifest lies below the folder.
+/// Whether a file of a manifest lies below the folder.
 fn is_below(file: &str) -> bool {
     let is_name =
         |part: &str| !part.is_empty() && part != "." && part != ".." && !part.contains(['\\', ':', '\0']);
     file.split('/').all(is_name)
 }
 
-/// Counts and digests what goes through.
+/// Counts and digests the bytes that it passes on.
 struct Tally<'a> {
     out: &'a mut dyn Write,
     digest: &'a mut Digest,

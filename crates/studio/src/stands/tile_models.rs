@@ -1,11 +1,11 @@
-//! The plants' own files, which tiles name.
+//! The plants' own files, which tiles refer to.
 
 use std::collections::BTreeMap;
 
 use base::Run;
 use formats::{
     ExportSpec, FileStems, ModelFiles, ModelFormat, PngCache, SharedModel, decode_uri, gltf_files,
-    share_pictures, usd_files, write_glb_packed,
+    share_pictures, usd_files, write_glb_joined,
 };
 use mesh::{Bounds, Model};
 use serde_json::Value;
@@ -14,33 +14,33 @@ use super::plan::{ForestPlan, ForestTilesError};
 use super::tile_folder::{TileDisk, TileFolder};
 use super::tiling::StandTile;
 
-/// Told how far a step is: how many are done, of how many.
+/// Callback for the progress of a step: how many are done, of how many.
 pub type Watch<'a> = &'a dyn Fn(usize, usize);
 
-/// Which models of a forest are made.
+/// Selection of the models of a forest.
 #[derive(Clone, Copy, Debug)]
 pub enum ModelsOf<'a> {
-    /// Those that a tile needs, at its level.
+    /// Models that a tile needs, at its level.
     Tile(&'a StandTile),
-    /// Those of some plants of the nursery, at all levels.
+    /// Models of some plants of the nursery, at all levels.
     Variants(&'a [u32]),
-    /// All that stand for a tree, at all levels; the level that USD names, if it is wanted.
+    /// All models that stand for a tree, at all levels.
     All {
-        /// That level.
+        /// The level that USD refers to, if it is wanted.
         usd: Option<u32>,
     },
 }
 
-/// From a tile to the folder of models.
+/// Path from a tile to the folder of models.
 const FROM_TILES: &str = "../../models/";
-/// From the folder of the tileset to it.
+/// Path from the folder of the tileset to that of models.
 const FROM_ROOT: &str = "models/";
 
-/// The models of a run: of each variant and level that it needs, the document that tiles take in.
+/// The models of a run: for each variant and level that it needs, the document that tiles include.
 #[derive(Debug, Default)]
 pub struct TileModels {
     tiles: BTreeMap<(u32, u32), SharedModel>,
-    /// The same, named from the folder of the tileset.
+    /// The same documents, with names relative to the folder of the tileset.
     root: BTreeMap<(u32, u32), SharedModel>,
     bounds: BTreeMap<u32, Bounds>,
 }
@@ -101,12 +101,12 @@ impl TileModels {
         self.root.get(&(variant, level)).ok_or_else(|| ForestTilesError::Bug("a model is missing".into()))
     }
 
-    /// The box around a variant at all of its levels.
+    /// Returns the box around a variant at all of its levels.
     pub(super) fn bounds(&self, variant: u32) -> Bounds {
         self.bounds.get(&variant).copied().unwrap_or(Bounds::EMPTY)
     }
 
-    /// Triangles of all trees at each level, finest first; of a run that made all models.
+    /// Counts the triangles of all trees at each level, finest first; for a run that made all models.
     pub fn triangles(&self, plan: &ForestPlan) -> Vec<u64> {
         let of = |level: u32| {
             let all = (0_u32..).zip(&plan.trees_of);
@@ -116,14 +116,14 @@ impl TileModels {
     }
 }
 
-/// The name of a level's files, without folder and ending.
+/// Returns the name of a level's files, without folder and ending.
 pub(super) fn stem(plan: &ForestPlan, variant: u32, level: u32) -> String {
     let is_far = plan.look().impostor.is_some() && level + 1 == plan.look().levels();
     let level = if is_far { "far".to_owned() } else { format!("lod{}", plan.look().finest + level) };
     format!("{}-{level}", plan.nursery.name(variant))
 }
 
-/// The document of a model that an earlier run wrote with all that it names.
+/// Returns the document of a model that an earlier run wrote with all that it names.
 fn kept<D: TileDisk>(
     plan: &ForestPlan,
     (variant, level): (u32, u32),
@@ -150,7 +150,7 @@ fn kept<D: TileDisk>(
     Some(text)
 }
 
-/// Grows a variant and writes its levels; their documents.
+/// Grows a variant, writes its levels and returns their documents.
 fn grown<D: TileDisk>(
     plan: &ForestPlan,
     variant: u32,
@@ -187,7 +187,7 @@ fn write_model<D: TileDisk>(
     for file in files.beside {
         folder.put(&format!("models/{}", file.name), file.bytes)?;
     }
-    // Last: where it is, all that it names is.
+    // Written last: where it exists, every file that it names does.
     folder.put(&format!("models/{}.gltf", stem(plan, variant, level)), files.own.clone())?;
     Ok(files.own)
 }
@@ -199,7 +199,7 @@ fn model_files(
 ) -> Result<ModelFiles, ForestTilesError> {
     let name = stem(plan, variant, level);
     let mut glb = Vec::new();
-    write_glb_packed(model, plan.packing(), &mut PngCache::new(), &mut glb)?;
+    write_glb_joined(model, plan.packing(), &mut PngCache::new(), &mut glb)?;
     let stems = FileStems { model: &name, textures: &name };
     let files = gltf_files(glb, ModelFormat::Gltf, stems)?;
     let plant = plan.nursery.name(variant);

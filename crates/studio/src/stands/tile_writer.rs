@@ -18,17 +18,17 @@ use super::tile_folder::{TILESET, TileDisk, TileFolder};
 use super::tile_models::{TileModels, Watch, stem};
 use super::tiling::StandTile;
 
-/// Tiles that are made side by side and then put in place.
+/// Number of tiles that are made in parallel and then put in place.
 const SIDE_BY_SIDE: usize = 32;
 /// Rows of the table that are written at a time.
 const ROWS: usize = 4_096;
 
-/// Files beside the tiles of a forest.
+/// Files of a forest in addition to its tiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WholeForest {
-    /// All trees in one `forest.glb`.
+    /// Whether to write all trees into one `forest.glb`.
     pub glb: bool,
-    /// All trees in one `forest.usda`.
+    /// Whether to write all trees into one `forest.usda`.
     pub usd: bool,
     /// The level of both, 0 for the finest of the tileset.
     pub level: u32,
@@ -39,9 +39,9 @@ pub struct WholeForest {
 /// Writes the tiles of a forest.
 #[derive(Clone, Copy, Debug)]
 pub struct TileWriter<'a> {
-    /// What is written.
+    /// The forest that is written.
     pub plan: &'a ForestPlan,
-    /// The models that its tiles name.
+    /// The models that its tiles refer to.
     pub models: &'a TileModels,
 }
 
@@ -52,7 +52,7 @@ struct Shown {
 }
 
 impl TileWriter<'_> {
-    /// Writes tiles that are not there yet. Memory: that of 32 tiles.
+    /// Writes missing tiles. Memory: that of 32 tiles.
     ///
     /// # Errors
     /// [`ForestTilesError`], and those of the disk.
@@ -103,20 +103,29 @@ impl TileWriter<'_> {
     }
 
     fn shown(&self, rows: impl Iterator<Item = u32>, wider: f64) -> Shown {
-        let mut shown = Shown { groups: BTreeMap::new(), rows: Vec::new() };
+        let mut placed: BTreeMap<u32, Vec<(Placed, &Tree)>> = BTreeMap::new();
         for row in rows {
             let tree = &self.plan.stand.trees[row as usize];
-            let Some(placed) = self.plan.nursery.place(tree) else { continue };
-            let placed = Placed { scale: placed.scale * DVec3::new(wider, 1.0, wider), ..placed };
-            let at = u32::try_from(shown.rows.len()).unwrap_or(u32::MAX);
-            shown.rows.push(table_row(tree));
-            shown.groups.entry(placed.variant).or_default().push(placed.instance(tree, at));
+            let Some(own) = self.plan.nursery.place(tree) else { continue };
+            let own = Placed { scale: own.scale * DVec3::new(wider, 1.0, wider), ..own };
+            placed.entry(own.variant).or_default().push((own, tree));
+        }
+        // The table has the order of the copies, as tiles ask for few bytes.
+        let mut shown = Shown { groups: BTreeMap::new(), rows: Vec::new() };
+        for (variant, trees) in placed {
+            let mut instances = Vec::with_capacity(trees.len());
+            for (own, tree) in trees {
+                let at = u32::try_from(shown.rows.len()).unwrap_or(u32::MAX);
+                shown.rows.push(table_row(tree));
+                instances.push(own.instance(tree, at));
+            }
+            shown.groups.insert(variant, instances);
         }
         shown
     }
 
-    /// Writes the tileset, the table of trees, the manifest, and one file of all trees if it is wanted: the last step, after all
-    /// tiles.
+    /// Writes the tileset, the table of trees, the manifest, and one file of all trees if it is wanted: the last step,
+    /// after all tiles.
     ///
     /// # Errors
     /// [`ForestTilesError`], and those of the disk.
@@ -161,7 +170,7 @@ impl TileWriter<'_> {
             self.plan.tiling.nodes(&self.plan.stand, &|row, wider| self.reach(&trees[row as usize], wider));
         let tileset = Tileset {
             root: &root,
-            // Nothing at all is twice as wrong as the coarsest tile, and no smaller than the forest.
+            // An empty view is twice as wrong as the coarsest tile, and the error is never small against the forest.
             geometric_error_m: 2.0 * root.geometric_error_m.max(root.bounds.size().length() / 16.0),
             transform: whole.place.map(|p| earth_frame(DVec2::new(p.x, p.y), p.z)),
             origin_m: self.plan.stand.origin_m,
@@ -170,7 +179,7 @@ impl TileWriter<'_> {
         folder.write_last(TILESET, |out| Ok(out.write_all(&text)?))
     }
 
-    /// The box around what stands for a tree.
+    /// Returns the box around the plant that stands for a tree.
     fn reach(&self, tree: &Tree, wider: f64) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         let Some(placed) = self.plan.nursery.place(tree) else { return bounds };
@@ -210,7 +219,7 @@ impl TileWriter<'_> {
         folder.write_last("forest.glb", |out| Ok(out.write_all(&bytes)?))
     }
 
-    /// A row a tree: what it is, and what stands for it.
+    /// Writes one row for each tree: its measures, and the plant that stands for it.
     fn csv<D: TileDisk>(&self, folder: &mut TileFolder<D>) -> Result<(), D::Error> {
         let origin = self.plan.stand.origin_m;
         folder.write_last("trees.csv", |out| {
@@ -227,22 +236,17 @@ impl TileWriter<'_> {
                     let (east, north, up) =
                         (origin.x + t.foot_m.x, origin.z - t.foot_m.z, origin.y + t.foot_m.y);
                     let species = quoted(&self.plan.stand.species[usize::from(t.species)]);
-                    let _ = writeln!(
-                        text,
-                        "{},{species},{east:.3},{north:.3},{up:.3},{:.2},{:.4},{:.2},{:.1},{},{},{:.4},{:.4},{:.3},{:.4},{:.3}",
-                        t.row,
-                        t.height_m,
-                        t.dbh_m,
-                        t.crown_width_m,
-                        t.age_years,
-                        given(t),
-                        self.plan.nursery.name(p.variant),
-                        p.scale.x,
-                        p.scale.y,
-                        p.height_error_m,
-                        p.dbh_error_m,
-                        p.crown_error_m,
-                    );
+                    let _ = write!(text, "{},{species}", t.row);
+                    let measures = [(t.height_m, 2), (t.dbh_m, 4), (t.crown_width_m, 2), (t.age_years, 1)];
+                    for (number, digits) in [(east, 3), (north, 3), (up, 3)].into_iter().chain(measures) {
+                        write_number(&mut text, number, digits);
+                    }
+                    let _ = write!(text, ",{},{}", given(t), self.plan.nursery.name(p.variant));
+                    let errors = [(p.height_error_m, 3), (p.dbh_error_m, 4), (p.crown_error_m, 3)];
+                    for (number, digits) in [(p.scale.x, 4), (p.scale.y, 4)].into_iter().chain(errors) {
+                        write_number(&mut text, number, digits);
+                    }
+                    text.push('\n');
                 }
                 out.write_all(text.as_bytes())?;
             }
@@ -262,13 +266,24 @@ fn table_row(tree: &Tree) -> TreeRow {
     }
 }
 
+/// A comma and a number with at most so many digits, at least one, behind its point: none that says nothing.
+fn write_number(text: &mut String, number: f64, digits: usize) {
+    text.push(',');
+    let start = text.len();
+    let _ = write!(text, "{number:.digits$}");
+    text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    if &text[start..] == "-0" {
+        text.replace_range(start.., "0");
+    }
+}
+
 /// Which measures the inventory gave, by their letters.
 fn given(tree: &Tree) -> String {
     let all = [(Figure::Height, 'h'), (Figure::Dbh, 'd'), (Figure::CrownWidth, 'c'), (Figure::Age, 'a')];
     all.into_iter().filter(|(figure, _)| tree.given.has(*figure)).map(|(_, letter)| letter).collect()
 }
 
-/// A field of CSV.
+/// Quotes a field of CSV.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

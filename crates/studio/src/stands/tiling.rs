@@ -1,4 +1,4 @@
-//! The quadtree: which trees are in a tile, at which level of detail.
+//! The quadtree: the trees of a tile, and its level of detail.
 
 use std::ops::Range;
 
@@ -8,31 +8,34 @@ use formats::TileNode;
 use glam::DVec3;
 use mesh::Bounds;
 
-/// A cell is halved at most so often.
+/// Most halvings of a cell.
 const DEEPEST: u8 = 20;
-/// The smallest side of the whole, metres.
+/// Least side of the whole, metres.
 const LEAST_M: f64 = 16.0;
-/// A share of the height of a tree: what the first coarser level loses. That level is made for trees of 192 pixels, and readers
-/// of tiles let an error become 16 pixels long.
+/// Error of the first coarser level, as a share of the height of a tree. That level is made for trees of 192 pixels,
+/// and readers of tiles accept an error of 16 pixels.
 const LOST: f64 = 16.0 / 192.0;
-/// Trees of the finest tiles where nothing else is asked for: so many tiles for the whole, but within these.
-const TILES: usize = 1_000;
+/// Trees of the finest tiles where nothing else is asked for: so many tiles for the whole, but within these. As many as cells
+/// that were halved five times, less what stands of equal density need so that hardly a cell has to be halved once more.
+const TILES: usize = 700;
 const FEWEST: u32 = 64;
+/// Most trees of a finest tile by default.
 const MOST: u32 = 1_024;
 
-/// How a stand is cut into tiles.
+/// Settings for cutting a stand into tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TilingSpec {
     /// Most trees of a tile of the finest level, at least 1; each coarser level has four times as many.
     pub trees: u32,
     /// The finest level of detail, as [`NurseryLook::finest`](super::NurseryLook::finest).
     pub finest: u32,
-    /// Levels of detail, at least 1; coarser tiles than these have the last, and of four trees one.
+    /// Number of levels of detail, at least 1; coarser tiles have the last level, and one of four trees.
     pub levels: u32,
 }
 
 impl TilingSpec {
-    /// Trees of the finest tiles for a stand of so many: 64 up to 64,000 trees, 1,024 from a million on.
+    /// Returns the default number of trees of the finest tiles of a stand: 64 up to 64,000 trees, 1,024 from a million
+    /// on.
     pub fn usual_trees(trees: usize) -> u32 {
         u32::try_from(trees / TILES).unwrap_or(MOST).clamp(FEWEST, MOST)
     }
@@ -41,7 +44,7 @@ impl TilingSpec {
 /// The name of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TileId {
-    /// How often the whole was halved.
+    /// Number of times that the whole was halved.
     pub depth: u8,
     /// Column, from the west.
     pub x: u32,
@@ -52,7 +55,7 @@ pub struct TileId {
 }
 
 impl TileId {
-    /// Its file below the folder of the tileset.
+    /// Returns its file below the folder of the tileset.
     pub fn file(self) -> String {
         let Self { depth, x, y, level } = self;
         format!("tiles/{depth}/{x}-{y}-{level}.glb")
@@ -64,15 +67,15 @@ impl TileId {
 pub struct StandTile {
     /// Its name.
     pub id: TileId,
-    /// Places of its trees in [`Tiling::order`].
+    /// Range of its trees in [`Tiling::order`].
     trees: Range<usize>,
-    /// Tiles of the coarsest level of detail that one in four trees is left of, so many times.
+    /// Number of times that its trees were reduced to one in four, beyond the coarsest level of detail.
     pub thinned: u32,
-    /// Behind the last of the tiles below it.
+    /// End of the range of the tiles below it.
     end: usize,
 }
 
-/// Why a stand is not cut.
+/// Reason why a stand is not cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TilingError {
     /// No trees.
@@ -83,21 +86,22 @@ pub enum TilingError {
     TooMany,
 }
 
-/// Tiles of a stand: a quadtree over the ground, in which each cell has its trees at a level of detail and is replaced by cells of
-/// the next finer level, itself or its quarters.
+/// Tiles of a stand: a quadtree over the ground, in which each cell has its trees at a level of detail and is replaced
+/// by cells of the next finer level, itself or its quarters.
 ///
-/// Guaranteed: a tree is in one tile of each level of detail that is not thinned; which follows from the stand and the spec alone.
+/// Guaranteed: a tree is in one tile of each level of detail that is not thinned; its choice follows from the stand and
+/// the spec alone.
 #[derive(Clone, Debug)]
 pub struct Tiling {
-    /// Trees, by their place along the curve through all cells.
+    /// Rows of trees, by their place along the curve through all cells.
     order: Vec<u32>,
-    /// Coarser ones before those that replace them.
+    /// Tiles, coarser ones before those that replace them.
     tiles: Vec<StandTile>,
     spec: TilingSpec,
 }
 
 impl Tiling {
-    /// Cuts a stand.
+    /// Cuts a stand into tiles.
     ///
     /// Cost: n log n in trees; 12 bytes a tree and 40 a tile.
     ///
@@ -112,17 +116,15 @@ impl Tiling {
         let (low, high) =
             feet().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
         let low = low.floor();
-        let mut side = LEAST_M;
-        while side <= (high.x - low.x).max(high.z - low.z) {
-            side *= 2.0;
-        }
+        // As close around the stand as it can be, so that its tiles are full.
+        let side = (high.x - low.x).max(high.z - low.z).ceil().max(LEAST_M);
         let mut keyed: Vec<(u64, u32)> = (0..count)
             .zip(feet())
             .map(|(row, foot)| (curve([(foot.x - low.x) / side, (foot.z - low.z) / side]), row))
             .collect();
         keyed.sort_unstable();
         let spec = TilingSpec { trees: spec.trees.max(1), levels: spec.levels.max(1), ..spec };
-        // The coarsest level takes all.
+        // The coarsest level includes all trees.
         let mut top = 0;
         while capacity(spec, top) < keyed.len() || top + 1 < spec.levels {
             top += 1;
@@ -171,23 +173,23 @@ impl Tiling {
         }
     }
 
-    /// All tiles, coarser ones before those that replace them.
+    /// Returns all tiles, coarser ones before those that replace them.
     pub fn tiles(&self) -> &[StandTile] {
         &self.tiles
     }
 
-    /// A tile by its name.
+    /// Returns a tile by its name.
     pub fn find(&self, id: TileId) -> Option<&StandTile> {
         self.tiles.iter().find(|t| t.id == id)
     }
 
-    /// The level of detail of a tile: a row of the levels of [`Nursery::models`](super::Nursery::models).
+    /// Returns the level of detail of a tile: a row of the levels of [`Nursery::models`](super::Nursery::models).
     pub fn detail(&self, tile: &StandTile) -> u32 {
         u32::from(tile.id.level).min(self.spec.levels - 1)
     }
 
-    /// Rows of [`Stand::trees`] that a tile shows, in the order of the curve. Of a thinned one that are those whose keys, drawn
-    /// from `seed`, end in enough zeros: each is also in the tiles that replace it.
+    /// Returns the rows of [`Stand::trees`] that a tile shows, in the order of the curve. A thinned one shows those
+    /// whose keys, drawn from `seed`, end in enough zeros: each is also in the tiles that replace it.
     pub fn shown<'a>(
         &'a self,
         tile: &'a StandTile,
@@ -200,7 +202,7 @@ impl Tiling {
             tree.is_some_and(|t| seed.child(u64::from(t.row)).number() & mask == 0)
         };
         let own = &self.order[tile.trees.clone()];
-        // Of a few trees none may be left: then the first is.
+        // Of a few trees none may remain: then the first one is shown.
         let none = tile.thinned > 0 && !own.iter().any(is_left);
         own.iter()
             .copied()
@@ -209,13 +211,13 @@ impl Tiling {
             .map(|(_, row)| row)
     }
 
-    /// The tree of tiles with their boxes and errors. `reach`: of each tree the box around what stands for it, with the tiles' own
-    /// `wider` across in thinned ones.
+    /// Returns the tree of tiles with their boxes and errors. `reach`: returns the box around the plant of a tree,
+    /// widened by the tile's own factor in thinned tiles.
     pub fn nodes(&self, stand: &Stand, reach: &dyn Fn(u32, f64) -> Bounds) -> TileNode {
         self.node(0, stand, reach).0
     }
 
-    /// A tile, and the height of the tallest tree in it.
+    /// Returns a tile, and the height of the tallest tree in it.
     fn node(&self, row: usize, stand: &Stand, reach: &dyn Fn(u32, f64) -> Bounds) -> (TileNode, f64) {
         let tile = &self.tiles[row];
         let (mut bounds, mut tallest, mut children) = (Bounds::EMPTY, 0.0_f64, Vec::new());
@@ -240,7 +242,7 @@ impl Tiling {
         (TileNode { bounds, geometric_error_m, content: tile.id.file(), children }, tallest)
     }
 
-    /// What a tile loses, metres: what its level of detail does of the tallest tree, 0 for the finest.
+    /// Returns the error of a tile, metres: that of its level of detail for the tallest tree, 0 for the finest.
     fn lost(&self, tile: &StandTile, tallest_m: f64) -> f64 {
         if tile.id.level == 0 {
             return 0.0;
@@ -251,28 +253,29 @@ impl Tiling {
 }
 
 impl StandTile {
-    /// How many trees lie in it; a thinned one shows fewer.
+    /// Returns the number of trees in it; a thinned one shows fewer.
     pub fn len(&self) -> usize {
         self.trees.len()
     }
 
-    /// A tile has trees.
+    /// Whether it has no trees.
     pub fn is_empty(&self) -> bool {
         self.trees.is_empty()
     }
 
-    /// How much wider its plants are than they would be: they cover the ground of those that are left out.
+    /// Returns the factor by which its plants are widened, to cover the ground of those that are left out.
     pub fn wider(&self) -> f64 {
         f64::from(1_u32 << self.thinned.min(30))
     }
 }
 
-/// Most trees of a tile of a level.
+/// Returns the most trees of a tile of a level.
 fn capacity(spec: TilingSpec, level: u32) -> usize {
     (spec.trees as usize).saturating_mul(1_usize.checked_shl(2 * level).unwrap_or(usize::MAX).max(1))
 }
 
-/// The place of a point (0 to 1) on the curve through all cells (Morton 1966): bits of both coordinates in turn.
+/// Returns the place of a point (0 to 1) on the curve through all cells (Morton 1966): bits of both coordinates in
+/// turn.
 fn curve(at: [f64; 2]) -> u64 {
     let cells = f64::from(1_u32 << DEEPEST);
     let [x, y] = at.map(|x| u64::from(base::ops::whole((x * cells).clamp(0.0, cells - 1.0))));

@@ -1,18 +1,20 @@
-//! A grown plant that stands for trees: its measures, and how thick its stems are.
+//! A grown plant that stands for trees: its measures, and the thickness of its stems.
 
 use base::ops;
 use glam::DVec3;
 use plant::{OrganKind, Plant};
 
-/// Stems are measured up to this height, metres, in so many steps: 1.3 m of the smallest scale that a plant may have.
+/// Height up to which stems are measured, metres: 1.3 m at the smallest scale of a plant.
 const STEM_M: f64 = 4.0;
+/// Number of steps in which stems are measured.
 const STEM_STEPS: usize = 80;
 /// Breast height, metres.
 pub(super) const BREAST_M: f64 = 1.3;
-/// How much thinner or thicker than it grew the stem of a variant may be made.
+/// Least factor by which the stem of a variant may be thickened.
 const THINNEST: f64 = 0.4;
+/// Largest factor by which the stem of a variant may be thickened.
 const THICKEST: f64 = 2.5;
-/// A stem that is less often as thick as the thinnest twig has no taper that could change.
+/// Least thickness of a stem, as a multiple of the thinnest twig, at which it has a taper that could change.
 const TAPERED: f64 = 1.5;
 
 /// A plant that stands for trees of a species.
@@ -22,24 +24,24 @@ pub struct Variant {
     pub species: u16,
     /// Row of the ages at which the species is grown, 0 for the oldest.
     pub age: u8,
-    /// Among those of its species and age, from 0.
+    /// Number among those of its species and age, from 0.
     pub number: u32,
-    /// Metres.
+    /// Height, metres.
     pub height_m: f64,
     /// Mean diameter of the crown, metres.
     pub crown_width_m: f64,
-    /// How far the middle of the leaves lies from the foot, metres, horizontally.
+    /// Horizontal offset of the middle of the leaves from the foot, metres.
     pub lean_m: DVec3,
-    /// The exponent by which radii are changed: `r' = r_min (r / r_min)^n`.
+    /// Exponent by which radii are changed: `r' = r_min (r / r_min)^n`.
     pub thicker: f64,
-    /// Radii of each stem at even heights from 0 to [`STEM_M`], metres, as they grew; 0 above its tip.
+    /// Radii of each stem as grown at even heights from 0 to [`STEM_M`], metres; 0 above its tip.
     stems: Vec<Vec<f64>>,
-    /// The thinnest shoot, metres.
+    /// Radius of the thinnest shoot, metres.
     thinnest_m: f64,
 }
 
 impl Variant {
-    /// The diameter of its stems at a height, metres: of several the quadratic sum. 0 above their tips.
+    /// Returns the diameter of its stems at a height, metres: the quadratic sum of several. 0 above their tips.
     pub fn diameter_m(&self, height_m: f64) -> f64 {
         let at = (height_m / STEM_M).clamp(0.0, 1.0) * (STEM_STEPS - 1) as f64;
         let row = ops::whole(at) as usize;
@@ -57,7 +59,7 @@ impl Variant {
         squares.sqrt()
     }
 
-    pub(super) fn of(plant: &Plant, (species, age, number): (u16, u8, u32)) -> Self {
+    pub(super) fn measure(plant: &Plant, (species, age, number): (u16, u8, u32)) -> Self {
         let measures = plant.measure();
         let (low, high) = plant.extent().unwrap_or_default();
         let across = 0.5 * (high.x - low.x + high.z - low.z);
@@ -83,12 +85,12 @@ impl Variant {
         }
     }
 
-    /// A radius after thickening, metres.
+    /// Returns a radius after thickening, metres.
     pub(super) fn thickened(&self, radius: f64) -> f64 {
         thickened(radius, self.thinnest_m, self.thicker)
     }
 
-    /// Lets the stem become so many times as thick at breast height.
+    /// Thickens the stem at breast height by a factor.
     pub(super) fn thicken(&mut self, times: f64) {
         let breast = self.diameter_m(BREAST_M) / 2.0;
         if breast > TAPERED * self.thinnest_m && self.thinnest_m > 0.0 {
@@ -112,7 +114,7 @@ fn thinnest(plant: &Plant, shoot: &[bool]) -> f64 {
     own.map(|(r, _)| *r).reduce(f64::min).unwrap_or(0.0)
 }
 
-/// The radius where a stem first passes each height above its foot.
+/// Returns the radius where a stem first passes each height above its foot.
 fn stem_radii(points: &[DVec3], radii: &[f64]) -> Vec<f64> {
     let foot = points.first().map_or(0.0, |p| p.y);
     let mut out = Vec::with_capacity(STEM_STEPS);

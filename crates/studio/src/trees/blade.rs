@@ -1,4 +1,4 @@
-//! Leaves of trees: a shape with what a spec asks for.
+//! Leaves of trees: a form, modified by a spec.
 //!
 //! `BladeSpec -> Blade (length 1)`
 
@@ -6,14 +6,14 @@ use glam::DVec2;
 use growth::BladeSpec;
 use plant::{Blade, BladeForm, Needles};
 
-/// The blade that a spec asks for, of length 1.
+/// Returns the blade of a spec, of length 1.
 pub fn tree_blade(spec: &BladeSpec) -> Blade {
     let mut blade = form_blade(spec);
     if let Some(teeth) = spec.teeth.filter(|n| *n > 0) {
         serrate(&mut blade, teeth.min(60));
     }
     let width = width(spec);
-    // Needles of a wider spray are as long; its side shoots are longer.
+    // Needles of a wider spray keep their length; its side shoots are longer.
     if spec.form != BladeForm::Spray {
         blade.outline.iter_mut().for_each(|p| p.x *= width);
     }
@@ -27,7 +27,7 @@ pub fn tree_blade(spec: &BladeSpec) -> Blade {
     blade
 }
 
-/// How much wider than usual.
+/// Returns the width of the blade, relative to the default.
 fn width(spec: &BladeSpec) -> f64 {
     spec.width.filter(|w| w.is_finite()).unwrap_or(1.0).clamp(0.1, 4.0)
 }
@@ -40,7 +40,7 @@ fn form_blade(spec: &BladeSpec) -> Blade {
     spec.form.blade()
 }
 
-/// Teeth along the margin of a blade, which point forward; the foot of the blade has none.
+/// Cuts teeth along the margin of a blade, which point forward; the foot of the blade has none.
 fn serrate(blade: &mut Blade, teeth: u32) {
     let Some(tip) = blade.outline.iter().position(|p| *p == DVec2::Y) else { return };
     let side = &blade.outline[..=tip];
@@ -59,7 +59,7 @@ fn serrate(blade: &mut Blade, teeth: u32) {
         right.push(b + DVec2::new(way.y, -way.x) * (0.32 * step));
     }
     right.push(DVec2::Y);
-    // A tooth of the far end may reach over the tip.
+    // A tooth near the end may reach beyond the tip.
     right.retain(|p| *p == DVec2::ZERO || (p.x > 0.0 && p.y < 0.995) || *p == DVec2::Y);
     let n = right.len();
     right.extend((1..n - 1).rev().map(|k| DVec2::new(-right[k].x, right[k].y)).collect::<Vec<_>>());
@@ -68,7 +68,7 @@ fn serrate(blade: &mut Blade, teeth: u32) {
     }
 }
 
-/// A line through these points without corners (Catmull and Rom 1974).
+/// Returns a smooth line through these points (Catmull and Rom 1974).
 fn curve(points: &[DVec2]) -> Vec<DVec2> {
     const STEPS: u32 = 8;
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! Flowers in the place of leaves.
+//! Flowers in place of leaves.
 //!
 //! `Plant with leaves + BlossomSpec -> the same plant, some of its leaves now flowers`
 
@@ -10,7 +10,7 @@ use plant::{
     Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId,
 };
 
-// The innermost of six whorls opens this far from the flower's axis.
+// Angle from the flower's axis at which the innermost of six whorls opens.
 const CLOSED: f64 = 20.0 * PI / 180.0;
 
 /// The shapes that the flowers of a tree share.
@@ -20,8 +20,8 @@ struct Shapes {
     stalk: ShapeId,
 }
 
-/// Turns leaves into flowers, and adds those that rules set. Which leaves follows from their keys, so that a larger share
-/// keeps those of a smaller. A leaf whose flower would enter an obstacle stays a leaf.
+/// Replaces leaves by flowers, and adds those that rules set. The choice of leaves follows from their keys, so that a
+/// larger share keeps those of a smaller. A leaf whose flower would enter an obstacle stays a leaf.
 pub(super) fn add_blossom(
     spec: &BlossomSpec,
     plant: &mut Plant,
@@ -45,7 +45,7 @@ pub(super) fn add_blossom(
     };
     let both = |s: &Shape| [1.0, plant::DRAWN_WIDER].into_iter().flat_map(|w| s.corners(w)).collect();
     let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(both).collect();
-    // Flowers of leaves look where they please, those that rules set along the stalk that was drawn for them.
+    // Flowers of leaves point in random directions, those that rules set along the stalk drawn for them.
     let of_leaf = |o: Organ| {
         let place = Place { bearer: o.bearer, frame: o.frame, scale: 1.0, key: o.key, stray: [0.5, 0.7] };
         (place, Some(o))
@@ -66,20 +66,20 @@ pub(super) fn add_blossom(
     }
 }
 
-/// Where a flower is made.
+/// Place of a flower.
 struct Place {
     bearer: Option<NodeId>,
     frame: Frame,
     scale: f64,
     key: u64,
-    /// How far it turns to the upper side of its place, and where it pleases.
+    /// Weights of its turns to the upper side of its place, and in a random direction.
     stray: [f64; 2],
 }
 
 fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Place, shapes: &Shapes, seed: Seed) {
     let key = seed.child(place.key).child(Draw::Template as u64);
     let mut draw = key.stream(Draw::Template);
-    // Flowers look outwards, to the light and a little where they please.
+    // Flowers point outwards, to the light and slightly at random.
     let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
     let [upper, astray] = place.stray;
     let axis = (place.frame.along + upper * place.frame.normal + astray * stray).normalize_or(DVec3::Y);
@@ -144,7 +144,7 @@ fn push(plant: &mut Plant, shape: Shape) -> ShapeId {
     ShapeId::new(plant.shapes.len() - 1)
 }
 
-/// A round petal with a notch at its end, as wide as it must be to close the whorl, or narrower.
+/// Returns a round petal with a notch at its end, wide enough to close the whorl, or narrower.
 fn petal(length_m: f64, spec: &BlossomSpec) -> Blade {
     let half = (1.08 * ops::sin(PI / f64::from(spec.petals.max(3)))).min(0.62) * spec.petal_width;
     // Few corners: a tree in blossom has tens of thousands of these.
@@ -159,13 +159,13 @@ fn petal(length_m: f64, spec: &BlossomSpec) -> Blade {
     Blade { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
 }
 
-/// A stalk that widens towards the flower.
+/// Returns a stalk that widens towards the flower.
 fn stalk(length_m: f64) -> Shape {
     let path = vec![DVec3::ZERO, DVec3::Y * length_m];
     Shape::Strand { path, radius_m: vec![0.022 * length_m, 0.035 * length_m], knob_m: 0.0 }
 }
 
-/// The tuft of stamens in the middle, as a small bowl turned over.
+/// Returns the tuft of stamens in the middle, as a small inverted bowl.
 fn disc(radius_m: f64) -> Blade {
     let corner = |k: u32| {
         let (s, c) = ops::sin_cos(TAU * f64::from(k) / 6.0);

@@ -7,11 +7,12 @@ use growth::{Grown, GuidedSpec, Light, Method, Resource, SelfOrganizingSpec};
 pub const OAK_METHODS: [(&str, &str); 3] =
     [("L-system", "oak-lsystem"), ("space colonization", "oak-colonization"), ("space competition", "oak")];
 
-/// What [`guided_methods`] compares.
+/// Names of the methods that [`guided_methods`] compares.
 pub const GUIDED_METHODS: [&str; 2] = ["guided growth", "self-organisation"];
 
-/// One crown by the improved growth of the VR paper and by its baseline, space colonisation by buds (Palubicki et al.
-/// 2009): in one envelope, with internodes of one length, one perception, angle, phyllotaxis, bias and number of rounds.
+/// Returns the settings of one crown by the improved growth of the VR paper and by its baseline, space colonisation by
+/// buds (Palubicki et al. 2009): in one envelope, with internodes of one length, one perception, angle, phyllotaxis,
+/// bias and number of rounds.
 ///
 /// `None` where the method has no envelope. The baseline's markers are as dense as a bud's own in its perception cone.
 pub fn guided_methods(method: &Method) -> Option<[Method; 2]> {
@@ -50,14 +51,14 @@ pub fn guided_methods(method: &Method) -> Option<[Method; 2]> {
         jitter_deg: guided.jitter_deg,
         most_per_shoot: guided.most_per_shoot,
         light_weight: 1.0,
-        // Without: a full crown has no free marker left, and would be shed whole.
+        // No shedding: a full crown has no free marker left, and would be shed whole.
         shed_below: 0.0,
         ..SelfOrganizingSpec::default()
     };
     Some([Method::Guided(guided), Method::SelfOrganizing(baseline)])
 }
 
-/// A row that the paper prints.
+/// A row of the paper's table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperOak {
     /// Method.
@@ -77,10 +78,10 @@ pub const PAPER_OAKS: [PaperOak; 3] = [
     PaperOak { method: "space competition", vertices_k: 105.2, triangles_k: 122.1, seconds: 9.0 },
 ];
 
-/// How large a tree is, metres.
+/// Size of a tree, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TreeSize {
-    /// From the ground to the highest node.
+    /// Height from the ground to the highest node.
     pub height_m: f64,
     /// Mean of the crown's extents along x and z.
     pub crown_m: f64,
@@ -95,7 +96,7 @@ pub fn tree_size(grown: &Grown) -> TreeSize {
     TreeSize { height_m, crown_m: 0.5 * (size.x + size.z) }
 }
 
-/// Enlarges or shrinks a whole tree about its root until it is `height_m` high, above 0; leaves keep their size.
+/// Scales a whole tree about its root until it is `height_m` high, above 0; leaves keep their size.
 ///
 /// The tree stays as it is where it has no height.
 pub fn scale_to_height(grown: &mut Grown, height_m: f64) {

@@ -1,4 +1,4 @@
-//! A tree that changes: growth, dress, edits by hand and meshes, each kept until what it depends on changes.
+//! A tree that changes: growth, look, hand edits and meshes, each kept until one of its inputs changes.
 //!
 //! `spec, seed -> grown | + look -> dressed | + edits -> shaped | + skin -> model`
 
@@ -14,15 +14,15 @@ use super::look::{dressed, paint, tint};
 use super::{Inside, OddMesh, TreeError, TreeOptions, scale_to_height, tree_blade};
 use crate::checks::{check_plant, check_tree};
 use crate::levels::LaidOut;
-use crate::lod::{coarser, keep_out};
+use crate::lod::{coarser, coarser_with, keep_out};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
 
-/// Makes trees of a description that changes: an update does again only what a change touches.
+/// Makes trees of a description that changes: an update recomputes only what a change affects.
 ///
-/// An edit by hand, a colour or a finer mesh grows nothing. Guaranteed: the same result as from a fresh evaluator;
-/// after an error the last model stays.
+/// A hand edit, a colour or a finer mesh grows nothing. Guaranteed: the same result as from a fresh evaluator; after an
+/// error the last model stays.
 ///
 /// ```
 /// use burgeon::shape::{AxisKey, HandEdit};
@@ -43,20 +43,20 @@ pub struct TreeEvaluator {
     shaper: Shaper,
     shaped: Option<Shaped>,
     model: Option<(Skinned, Model)>,
-    /// What lies where in the model.
+    /// Places of the plant's parts in the model.
     layout: Layout,
-    /// What of the model lies in obstacles.
+    /// Parts of the model inside obstacles.
     inside: Option<Inside>,
-    /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
+    /// Whether the model is of a previous plant: shown until there is another, in case an update is stopped.
     stale: bool,
-    /// Times of what a preview made already, of the update that follows it.
+    /// Times of the stages that a preview already computed, for the update that follows it.
     begun: Report,
     done: Vec<&'static str>,
     /// See [`crate::SceneEvaluator::set_previewing`].
     pub(crate) previewing: bool,
 }
 
-/// What growth made.
+/// Result of growth.
 #[derive(Clone, Debug)]
 struct Raw {
     from: (TreeSpec, Blade, Seed),
@@ -65,7 +65,7 @@ struct Raw {
     warnings: Vec<Warning>,
 }
 
-/// With colours and blossoms.
+/// A tree with colours and blossoms.
 #[derive(Clone, Debug)]
 struct Dressed {
     from: (Look, BlossomSpec, bool, Option<f64>),
@@ -79,23 +79,23 @@ struct Shaped {
     told: Vec<EditReport>,
 }
 
-/// A tree of no more nodes and organs needs no coarse preview: the whole is there as soon.
+/// Most nodes and organs of a tree without a coarse preview: the whole appears as quickly.
 const SMALL: usize = 4_000;
-/// How coarse a preview is: a quarter of the leaves, which cover as much, and the longer half of the axes. With an eighth,
-/// crowns of small leaves are bare.
+/// Level of a preview: a quarter of the leaves, which cover the same area, and the longer half of the axes. With an
+/// eighth, crowns of small leaves are bare.
 const LOOK_LEVEL: u32 = 2;
 
-/// The season from which on there are flowers.
+/// Earliest season with flowers.
 const EARLIEST_FLOWERS: f64 = -0.9;
 
-/// What a model is made from, besides its plant.
+/// Inputs of a model in addition to its plant.
 pub(super) type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
 
 impl TreeEvaluator {
-    /// Brings everything up to date and reports. [`TreeOptions::levels`] are left to [`super::make_tree`].
+    /// Updates everything and reports. [`TreeOptions::levels`] are left to [`super::make_tree`].
     ///
     /// # Errors
-    /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+    /// [`TreeError`]: a fault of the spec, or cancelled.
     pub fn update(
         &mut self,
         spec: &TreeSpec,
@@ -107,11 +107,11 @@ impl TreeEvaluator {
         self.meshed(spec, seed, options, (report, obstacles), run)
     }
 
-    /// As [`Self::update`], for programs without edits by hand: what calls this and not that links no code of theirs.
-    /// [`TreeOptions::edits`] must be empty.
+    /// Updates as [`Self::update`] does, for programs without hand edits: a program that calls only this links no code
+    /// of hand edits. [`TreeOptions::edits`] must be empty.
     ///
     /// # Errors
-    /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+    /// [`TreeError`]: a fault of the spec, or cancelled.
     pub fn update_unedited(
         &mut self,
         spec: &TreeSpec,
@@ -125,7 +125,7 @@ impl TreeEvaluator {
         self.meshed(spec, seed, options, begun, run)
     }
 
-    /// Meshes and report.
+    /// Makes meshes and report.
     fn meshed(
         &mut self,
         spec: &TreeSpec,
@@ -136,16 +136,17 @@ impl TreeEvaluator {
     ) -> Result<ItemReport, TreeError> {
         if self.mesh(spec, seed, options, &mut report, run)? {
             let model = self.model().filter(|_| !self.previewing);
-            self.inside = model.and_then(|m| Inside::of(m, &obstacles));
+            self.inside = model.and_then(|m| Inside::measure(m, &obstacles));
         }
         Ok(self.item(spec, options, &report))
     }
 
-    /// A much coarser model of what [`Self::update`] will make, without textures, if that is a large tree that was not
-    /// grown yet: it is there long before the whole. The update that follows grows nothing again.
+    /// Returns a much coarser model of the tree that [`Self::update`] will make, without textures, if that is a large
+    /// tree that has not been grown yet: it is ready long before the whole. The update that follows grows nothing
+    /// again.
     ///
     /// # Errors
-    /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+    /// [`TreeError`]: a fault of the spec, or cancelled.
     pub fn preview(
         &mut self,
         spec: &TreeSpec,
@@ -164,7 +165,7 @@ impl TreeEvaluator {
         Ok(Some(skinned(&copy, &from, run)?.0))
     }
 
-    /// Everything but the meshes.
+    /// Computes everything but the meshes.
     fn shaped(
         &mut self,
         spec: &TreeSpec,
@@ -179,7 +180,7 @@ impl TreeEvaluator {
         Ok((report, obstacles))
     }
 
-    /// Everything but edits by hand and meshes.
+    /// Computes everything but hand edits and meshes.
     fn grown_and_dressed(
         &mut self,
         spec: &TreeSpec,
@@ -217,7 +218,7 @@ impl TreeEvaluator {
             return Ok(obstacles);
         }
         let mut told = Report::default();
-        let odd = spec.obstacles.iter().enumerate().filter_map(|(i, o)| OddMesh::of(i, o)).collect();
+        let odd = spec.obstacles.iter().enumerate().filter_map(|(i, o)| OddMesh::check(i, o)).collect();
         let grown = growth::grow(spec, Some(blade.clone()), seed, run, &mut told)?;
         for stage in &told.stages {
             report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
@@ -237,7 +238,7 @@ impl TreeEvaluator {
             return;
         }
         let mut grown = raw.grown.clone();
-        // They come before leaves, in the places of some. Nothing flowers in autumn, or before spring.
+        // Flowers replace some leaves. Nothing flowers in autumn, or before spring.
         if (EARLIEST_FLOWERS..=0.0).contains(&spec.look.leaf_season()) {
             let share = spec.blossom.share * flowering(spec);
             let blossom = BlossomSpec { share, ..spec.blossom.clone() };
@@ -276,7 +277,7 @@ impl TreeEvaluator {
         Ok(())
     }
 
-    /// Whether there is another model now.
+    /// Makes the meshes; returns whether the model changed.
     fn mesh(
         &mut self,
         spec: &TreeSpec,
@@ -290,7 +291,7 @@ impl TreeEvaluator {
             return Ok(false);
         }
         let Some(plant) = self.plant() else { return Ok(false) };
-        // What growth told is done.
+        // The progress that growth reported is complete.
         let telling = Telling::from(run.cancel.share().unwrap_or(0.0), run);
         let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &telling.run()));
         let (model, layout) = model?;
@@ -299,7 +300,7 @@ impl TreeEvaluator {
         Ok(true)
     }
 
-    /// A coarser copy of the model, with the same materials; none before an update. See [`coarser`].
+    /// Returns a coarser copy of the model, with the same materials; `None` before an update. See [`coarser`].
     ///
     /// # Errors
     /// [`TreeError`].
@@ -307,7 +308,7 @@ impl TreeEvaluator {
         Ok(self.laid_out_at(level, run)?.map(|(model, _)| model))
     }
 
-    /// As [`Self::at_level`], also with the coarser plant and what of it lies where in the model.
+    /// Returns the same as [`Self::at_level`], and the coarser plant with the places of its parts in the model.
     ///
     /// # Errors
     /// [`TreeError`].
@@ -329,13 +330,14 @@ impl TreeEvaluator {
         else {
             return ItemReport::default(); // update fills all of them before it comes here
         };
-        let growth = GrowthReport::of(spec, &dressed.grown, self.inside);
+        let growth = GrowthReport::new(spec, &dressed.grown, self.inside);
         let mut checks = Report::default();
         if !self.previewing {
             check_plant(plant, &mut checks);
             check_tree(spec, &raw.grown.plant, &growth, &mut checks);
         }
-        // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
+        // Some scattered points are always out of reach; this is worth a warning only when they were given, or most of
+        // them.
         let given = matches!(spec.method, Method::Points { .. });
         let many = 2 * growth.unreachable > growth.attractors;
         let told = raw.warnings.iter().filter(|w| given || many || w.code != "attractors-unreached");
@@ -363,33 +365,35 @@ impl TreeEvaluator {
         item
     }
 
-    /// The stages that the last update did again: `structure`, `depth`, `shape`, `mesh`.
+    /// Returns the stages that the last update recomputed: `structure`, `depth`, `shape`, `mesh`.
     pub fn stages_done(&self) -> &[&'static str] {
         &self.done
     }
 
-    /// The plant of the last update that succeeded so far, with its edits by hand.
+    /// Returns the plant of the last successful update, with its hand edits.
     pub fn plant(&self) -> Option<&Plant> {
         let grown = || self.dressed.as_ref().map(|d| &d.grown.plant);
         self.shaped.as_ref().map(|s| &s.plant).or_else(grown)
     }
 
-    /// The model of the last update that succeeded.
+    /// Returns the model of the last successful update.
     pub fn model(&self) -> Option<&Model> {
         self.model.as_ref().map(|(_, m)| m)
     }
 
-    /// What lies where in the model of the last update; none where that is of another plant by now.
+    /// Returns the places of the plant's parts in the model of the last update; `None` where that is of a previous
+    /// plant.
     pub fn layout(&self) -> Option<&Layout> {
         self.model.as_ref().filter(|_| !self.stale).map(|_| &self.layout)
     }
 
-    /// The model of the last update with its plant and what lies where in it; none where that is of another plant by now.
+    /// Returns the model of the last update with its plant and the places of its parts; `None` where it is of a
+    /// previous plant.
     pub(super) fn laid_out(&self) -> Option<(&Model, &Plant, &Layout)> {
         Some((self.model()?, self.plant()?, self.layout()?))
     }
 
-    /// What was grown, as the hand left it, its model, and what lies where in it; the evaluator is empty then.
+    /// Takes the grown tree with its hand edits, its model, and the places of its parts; the evaluator is then empty.
     pub(super) fn take(&mut self) -> Option<(Grown, Model, Layout)> {
         let Self { dressed, shaped, model, layout, .. } = std::mem::take(self);
         let mut grown = dressed?.grown;
@@ -400,34 +404,34 @@ impl TreeEvaluator {
     }
 }
 
-/// A tree without meshes, as [`TreeEvaluator::update`] makes it.
+/// Returns a tree without meshes, as [`TreeEvaluator::update`] makes it.
 pub(crate) fn grow_plant(spec: &TreeSpec, seed: Seed, run: &Run<'_>) -> Result<Plant, TreeError> {
     let mut evaluator = TreeEvaluator::default();
     evaluator.shaped(spec, seed, &TreeOptions::default(), run)?;
     Ok(evaluator.dressed.map(|d| d.grown.plant).unwrap_or_default())
 }
 
-/// The meshes of a plant of a spec at a level, 0 for the plant itself, as [`TreeEvaluator::at_level`] makes them; textures
-/// follow from the seed.
+/// Returns the meshes of a plant of a spec at a level, 0 for the plant itself, as [`TreeEvaluator::at_level`] makes
+/// them; textures follow from the seed.
 pub(crate) fn mesh_plant(
     plant: &Plant,
     (spec, seed): (&TreeSpec, Seed),
     options: &TreeOptions,
-    level: u32,
+    (level, painted): (u32, Option<&skin::Shoots>),
     run: &Run<'_>,
 ) -> Result<Model, Stopped> {
     let fine = skin_spec(spec, seed, options);
     if level == 0 {
         return Ok(skinned(plant, &(fine, spec.look.clone(), options.leaf.clone()), run)?.0);
     }
-    let (copy, skin) = coarser(plant, &fine, level);
+    let (copy, skin) = coarser_with(plant, &fine, level, painted);
     Ok(skinned(&copy, &(skin, spec.look.clone(), options.leaf.clone()), run)?.0)
 }
 
 fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
-    // A leaf of one's own has veins of its own, or those of most leaves.
+    // A leaf of the user has veins of its own, or those of most leaves.
     let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());
-    // It has a texture of its own, too, which no atlas shows.
+    // It also has its own texture, which no atlas shows.
     let foliage = if options.leaf.is_some() { FoliageStyle::Outlines } else { options.skin.foliage };
     dressed(SkinSpec { seed, foliage, ..options.skin.clone() }, &spec.look, form)
 }
@@ -445,10 +449,11 @@ pub(super) fn skinned(
     Ok((model, layout))
 }
 
-/// Between these shares of a life a plant comes to flower: of trees of forty years, seedlings flower after five to fifteen.
+/// Shares of a life between which a plant begins to flower: of trees of forty years, seedlings flower after five to
+/// fifteen.
 const JUVENILE: [f64; 2] = [0.1, 0.3];
 
-/// The share of its flowers that a plant has at its age.
+/// Returns the share of its flowers that a plant has at its age.
 fn flowering(spec: &TreeSpec) -> f64 {
     let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years.max(1)));
     base::ops::smoothstep(JUVENILE[0], JUVENILE[1], life)

@@ -11,11 +11,12 @@ pub type NamedMesh = (Vec<DVec3>, Vec<[u32; 3]>);
 
 /// Reads a spec.
 ///
-/// `open` gives what is in a file named by `file = "..."` in an obstacle or envelope of shape `mesh` (vertices and
-/// triangles) or `points`, in metres, +Y up; `None` for a file that is not there. The core opens no files itself.
+/// `open` returns the contents of a file named by `file = "..."` in an obstacle or envelope of shape `mesh` (vertices
+/// and triangles) or `points`, in metres, +Y up; `None` for a file that does not exist. The core opens no files itself.
 ///
 /// # Errors
-/// [`TreeError::Spec`] with the line of what is wrong (ranges are looked at when the tree grows); [`TreeError::File`] for a file that `open` did not give.
+/// [`TreeError::Spec`] with the line of the fault (ranges are checked when the tree grows); [`TreeError::File`] for a
+/// file that `open` did not return.
 pub fn read_tree_spec(text: &str, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<TreeSpec, TreeError> {
     let fault = |f| TreeError::Spec(SpecFault::in_text(text, f));
     let mut tree = Node::from_toml(text).map_err(fault)?;
@@ -24,10 +25,10 @@ pub fn read_tree_spec(text: &str, open: &dyn Fn(&str) -> Option<NamedMesh>) -> R
 }
 
 impl TreeError {
-    /// The same error as the reader of a spec's file would like to have it: `text` is what [`read_tree_spec`] read.
+    /// Adds to the error what the reader of a spec's file needs: `text` is the text that [`read_tree_spec`] read.
     ///
-    /// A number out of range and an obstacle at fault get their line where the text has them, an obstacle the name of
-    /// its file; lines of an L-system's rules count from the start of the file instead of the rules.
+    /// A number out of range and a faulty obstacle get their line where the text has them, an obstacle the name of its
+    /// file; lines of an L-system's rules count from the start of the file instead of the rules.
     #[must_use]
     pub fn in_text(self, text: &str) -> Self {
         let Ok(tree) = Node::from_toml(text) else { return self };
@@ -62,7 +63,7 @@ impl TreeError {
                 let mut found = Vec::new();
                 let name = field.rsplit('.').next().unwrap_or(field);
                 places(&tree, name, value, &mut found);
-                // Of several it is not known which one was meant.
+                // If there are several, the one meant is unknown.
                 if let [at] = found[..] { at_line(text, at, error) } else { self }
             }
             other => other,
@@ -74,14 +75,14 @@ fn at_line(text: &str, at: usize, error: &GrowthError) -> TreeError {
     TreeError::Line { line: line_at(text, at), error: error.clone() }
 }
 
-/// The line on which the content of a string of several lines starts; `None` of one on a single line.
+/// Returns the line on which the content of a string of several lines starts; `None` for one on a single line.
 fn first_line(text: &str, at: usize) -> Option<usize> {
     let rest = text.get(at..)?;
     let inside = rest.strip_prefix("\"\"\"").or_else(|| rest.strip_prefix("'''"))?;
     Some(line_at(text, at) + usize::from(inside.starts_with('\n') || inside.starts_with("\r\n")))
 }
 
-/// Where fields of this name have this value.
+/// Finds the places where fields of this name have this value.
 fn places(node: &Node, name: &str, value: f64, found: &mut Vec<usize>) {
     for entry in node.entries() {
         let number = match entry.node.kind {
@@ -100,7 +101,7 @@ fn places(node: &Node, name: &str, value: f64, found: &mut Vec<usize>) {
     }
 }
 
-/// Puts meshes and points in the place of their files' names.
+/// Replaces the names of files by their meshes and points.
 fn resolve(tree: &mut Node, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<(), TreeError> {
     let at = tree.at;
     let entries = match &mut tree.kind {
@@ -131,7 +132,7 @@ fn resolve(tree: &mut Node, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<
     Ok(())
 }
 
-/// The JSON Schema of [`TreeSpec`], with units (`x-unit`), ranges and defaults.
+/// Returns the JSON Schema of [`TreeSpec`], with units (`x-unit`), ranges and defaults.
 ///
 /// ```
 /// let schema = burgeon::tree_schema();
@@ -254,7 +255,7 @@ mod tests {
             let spec = preset.spec().expect("sound");
             let value = serde_json::to_value(&spec).expect("plain data");
             assert_eq!(spec::from_json(&value).ok().as_ref(), Some(&spec), "{}", preset.key);
-            // The reader that everybody knows says the same.
+            // Serde's well-known reader gives the same.
             assert_eq!(serde_json::from_value::<TreeSpec>(value).ok(), Some(spec), "{}", preset.key);
         }
         let wrong = serde_json::json!({ "wood": { "relax": "much" } });
@@ -292,7 +293,7 @@ mod tests {
         assert_eq!(serde_json::from_str::<TreeSpec>(&text).ok(), Some(spec), "{text}");
     }
 
-    /// Every number of the schema that has a range, by its path.
+    /// Collects every number of the schema that has a range, by its path.
     fn ranges(
         schema: &serde_json::Value,
         at: &serde_json::Value,
@@ -311,7 +312,7 @@ mod tests {
         }
     }
 
-    /// A value outside its range is an error that names the field.
+    /// Checks that a value outside its range is an error that names the field.
     fn refused(base: &TreeSpec, path: &str, (lo, hi): (f64, f64)) {
         for outside in [lo - 1.0, hi + hi.abs().max(1.0)] {
             let mut value = serde_json::to_value(base).expect("plain data");
@@ -356,7 +357,7 @@ mod tests {
             let mut own = Vec::new();
             ranges(schema, variant, "/method", &mut own);
             for (path, lo, hi) in &own {
-                // Of modules more than the most are cut down to it: a limit, not a fault.
+                // Excess modules are cut: this is a limit, not a fault.
                 if !path.ends_with("most_modules") {
                     refused(&base, path, (*lo, *hi));
                 }

@@ -1,21 +1,33 @@
-//! A tree of a given height: the age at which its species has it.
+//! A tree of a given height or girth: the age at which its species has it.
 
 use base::{Report, Run, Seed};
-use growth::TreeSpec;
+use growth::{Grown, TreeSpec};
 
 use super::{TreeError, tree_blade, tree_size};
 
-/// A tree is scaled by at most this share of its height: between two years of a life, and to what a taller or shorter one of
-/// its species may have.
+/// Largest share of its height by which a tree is scaled: between two years of a life, and to the variation of its
+/// species.
 const SCALED: f64 = 0.2;
 
-/// Why a tree cannot have a height.
+/// Reason why a tree cannot have a height.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightError {
     /// Its species does not reach it, or is taller as a seedling.
     #[error("a height of {wanted_m} m is out of reach: this species is {least_m:.2} to {most_m:.1} m high")]
     Reach {
-        /// What was asked for.
+        /// The requested height, metres.
+        wanted_m: f64,
+        /// The least, metres.
+        least_m: f64,
+        /// The most, metres.
+        most_m: f64,
+    },
+    /// Its species never has a stem as thick, or none as thin that is taller than a breast.
+    #[error(
+        "a diameter of {wanted_m} m at breast height is out of reach: stems of this species have {least_m:.3} to {most_m:.3} m"
+    )]
+    Girth {
+        /// The requested diameter, metres.
         wanted_m: f64,
         /// The least, metres.
         least_m: f64,
@@ -27,7 +39,61 @@ pub enum HeightError {
     Tree(#[from] TreeError),
 }
 
-/// The age in years at which a tree is nearest to a height; none for one without a life
+/// Grows a tree at an age, without meshes.
+fn grown_at(spec: &TreeSpec, seed: Seed, age: Option<u32>, run: &Run<'_>) -> Result<Grown, TreeError> {
+    let aged = TreeSpec { age, ..spec.clone() };
+    aged.check(&run.budget)?;
+    let blade = tree_blade(&aged.blade);
+    Ok(growth::grow(&aged, Some(blade), seed, run, &mut Report::default())?)
+}
+
+/// A tree that has a diameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TreeOfDbh {
+    /// Its age in years; `None`: full-grown.
+    pub age: Option<u32>,
+    /// The height to which it is scaled ([`super::TreeOptions::height_m`]), metres.
+    pub height_m: f64,
+}
+
+/// Returns the age at which a tree is nearest to a diameter at breast height (1.3 m), and the height to which it is
+/// scaled so that it has it.
+///
+/// Guaranteed: it is scaled by a fifth at most, height and girth alike. Not guaranteed: the diameter to the last per
+/// cent, as breast height is elsewhere on a scaled stem. Cost: at most ten growths without meshes.
+///
+/// # Errors
+/// [`HeightError`].
+pub fn tree_of_dbh(spec: &TreeSpec, seed: Seed, dbh_m: f64, run: &Run<'_>) -> Result<TreeOfDbh, HeightError> {
+    let at = |age: Option<u32>| -> Result<(f64, f64), TreeError> {
+        let grown = grown_at(spec, seed, age, run)?;
+        Ok((grown.plant.measure().dbh_m.unwrap_or(0.0), tree_size(&grown).height_m))
+    };
+    let full = at(None)?;
+    let mut old = (spec.years.unwrap_or(0), full);
+    let mut young = (1, if spec.years.is_some() { at(Some(1))? } else { full });
+    if spec.years.is_some() && dbh_m < full.0 {
+        while old.0 - young.0 > 1 {
+            let middle = young.0 + (old.0 - young.0) / 2;
+            let size = at(Some(middle))?;
+            if size.0 < dbh_m { young = (middle, size) } else { old = (middle, size) }
+        }
+    } else {
+        young = old;
+    }
+    // A tree below breast height has no diameter.
+    let is_young = young.1.0 > 0.0 && dbh_m - young.1.0 < old.1.0 - dbh_m;
+    let (age, (has_m, height_m)) = if is_young { young } else { old };
+    let factor = dbh_m / has_m;
+    if !(1.0 - SCALED..=1.0 + SCALED).contains(&factor) {
+        let (least_m, most_m) = (old.1.0.min(full.0) * (1.0 - SCALED), full.0 * (1.0 + SCALED));
+        return Err(HeightError::Girth { wanted_m: dbh_m, least_m, most_m });
+    }
+    let is_full = spec.years.is_none_or(|years| age == years);
+    Ok(TreeOfDbh { age: (!is_full).then_some(age), height_m: height_m * factor })
+}
+
+/// Returns the age in years at which a tree is nearest to a height; `None` for one without a life
 /// ([`TreeSpec::years`]), which is full-grown. With [`super::TreeOptions::height_m`] it then has that height.
 ///
 /// Guaranteed: the height is within a fifth of that of the tree at that age. Cost: at most nine growths without meshes.
@@ -41,11 +107,7 @@ pub fn age_of_height(
     run: &Run<'_>,
 ) -> Result<Option<u32>, HeightError> {
     let at = |age: Option<u32>| -> Result<f64, TreeError> {
-        let aged = TreeSpec { age, ..spec.clone() };
-        aged.check(&run.budget)?;
-        let blade = tree_blade(&aged.blade);
-        let grown = growth::grow(&aged, Some(blade), seed, run, &mut Report::default())?;
-        Ok(tree_size(&grown).height_m)
+        Ok(tree_size(&grown_at(spec, seed, age, run)?).height_m)
     };
     let full = at(None)?;
     let (low, most_m) = (if spec.years.is_some() { at(Some(1))? } else { full }, full * (1.0 + SCALED));

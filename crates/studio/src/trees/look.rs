@@ -11,19 +11,20 @@ use plant::{BladeForm, Organ, OrganKind, Paint, Plant};
 use skin::{BarkKind, BarkSpec, SkinSpec, VeinPattern};
 use spec::Colour;
 
-/// Colour towards which leaves are lighter when they unfold: they have their size before their chlorophyll.
+/// Colour towards which leaves are tinted when they unfold: they reach their size before their chlorophyll.
 const YOUNG: Colour = Colour([0xc4, 0xd6, 0x5c]);
-/// How far they are, at the beginning.
+/// Share of that tint at the beginning.
 const YOUNG_SHARE: f64 = 0.6;
 /// Size of a leaf as it leaves its bud, relative to the grown one.
 const BURST: f64 = 0.12;
-/// How long a leaf takes to unfold, and how much later than the first the last one begins, of the time from bare to summer:
-/// where leaves follow one another, and where they come nearly together (Koike 1990).
+/// Time that a leaf takes to unfold, as a share of that from bare to summer.
 const UNFOLDING: f64 = 0.4;
+/// Delay of the last leaf after the first, as a share of the same time: for leaves that appear successively, and for
+/// those that appear almost together (Koike 1990).
 const SPREAD: [f64; 2] = [0.6, 0.25];
 
-/// Gives each leaf its colour, and takes those that have not unfolded or have fallen by the season; how many. Leaves that have
-/// a picture only vary in brightness.
+/// Gives each leaf its colour, and removes those that have not unfolded or have fallen by the season; returns how many.
+/// Leaves that have a picture only vary in brightness.
 pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -> usize {
     let pair = |from: Colour, to: Option<Colour>| [from.linear(), to.unwrap_or(from).linear()];
     let plain = [[1.0; 3], [0.8; 3]];
@@ -31,7 +32,7 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -
     let season = look.leaf_season();
     let late = match season {
         s if s > 0.0 => lateness(plant, look.autumn_outside, seed),
-        // The inside is warmer and in leaf first.
+        // The inside is warmer and unfolds first.
         s if s < 0.0 => lateness(plant, false, seed),
         _ => Vec::new(),
     };
@@ -53,7 +54,7 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -
                 if turned < 1.0 { towards(green, gold, turned) } else { gold }
             }
             None if season < 0.0 => {
-                let Spring { open, age } = Spring::of(season, spread * late[row]);
+                let Spring { open, age } = Spring::compute(season, spread * late[row]);
                 organ.scale *= ops::lerp(BURST, 1.0, open);
                 if pictured { green } else { towards(green, YOUNG.linear(), YOUNG_SHARE * (1.0 - age)) }
             }
@@ -70,7 +71,7 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -
     let mut late = late.into_iter();
     plant.organs.retain(|o| {
         let late = late.next().unwrap_or(0.0);
-        let bud = || Spring::of(season, spread * late).age <= 0.0;
+        let bud = || Spring::compute(season, spread * late).age <= 0.0;
         let away = if season < 0.0 { bud() } else { has_fallen(season, late) };
         o.kind != OrganKind::Leaf || !away
     });
@@ -79,38 +80,38 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -
 
 /// A leaf in spring.
 struct Spring {
-    /// How far it has unfolded, 0 to 1.
+    /// Degree of unfolding, 0 to 1.
     open: f64,
-    /// The share of its way from the bud to summer that is behind it.
+    /// Share of its development from bud to summer that is complete.
     age: f64,
 }
 
 impl Spring {
-    /// A leaf that leaves its bud at a share of the time from bare to summer.
-    fn of(season: f64, begins: f64) -> Self {
+    /// Computes the state of a leaf that leaves its bud at a share of the time from bare to summer.
+    fn compute(season: f64, begins: f64) -> Self {
         let (now, left) = (season + 1.0, 1.0 - begins);
         let age = ((now - begins) / left).clamp(0.0, 1.0);
         Self { open: ops::smoothstep(begins, begins + UNFOLDING, now), age }
     }
 }
 
-/// How far the colour of a leaf is changed, 0 to 1: the last ones turn when the first are about to fall.
+/// Returns how far the colour of a leaf has turned, 0 to 1: the last ones turn when the first are about to fall.
 fn turned(season: f64, late: f64) -> f64 {
     if season >= 0.5 { 1.0 } else { ((season - 0.3 * late) / 0.2).clamp(0.0, 1.0) }
 }
 
-/// Whether a leaf is on the ground: what turned first falls first.
+/// Whether a leaf has fallen: the first leaves to turn fall first.
 fn has_fallen(season: f64, late: f64) -> bool {
     season >= 1.0 || season - 0.5 > 0.5 * late
 }
 
-/// By organ: how late in autumn it turns and falls, or unfolds in spring, 0 to below 1.
+/// Returns for each organ how late in autumn it turns and falls, or unfolds in spring, 0 to below 1.
 ///
-/// Trees of early successions turn from the inside of the crown outwards, others from its outside (Koike 1990); twigs and
-/// leaves differ beside that.
+/// Trees of early successions turn from the inside of the crown outwards, others from its outside (Koike 1990); twigs
+/// and leaves vary in addition to that.
 fn lateness(plant: &Plant, outside: bool, seed: Seed) -> Vec<f64> {
     let axis_of = |o: &Organ| o.bearer.map(|b| plant.nodes.axis[b.index()].index());
-    // Each crown by itself: bearers come before what they bear.
+    // Each crown by itself: bearers come before the axes that they bear.
     let mut tree: Vec<usize> = (0..plant.axes.len()).collect();
     for (row, axis) in plant.axes.iter().enumerate() {
         if let Some(bearer) = axis.bearer {
@@ -134,7 +135,7 @@ fn lateness(plant: &Plant, outside: bool, seed: Seed) -> Vec<f64> {
     plant.organs.iter().map(|o| if o.kind == OrganKind::Leaf { late(o) } else { 0.0 }).collect()
 }
 
-/// A surface with the bark of a look, and leaves with the veins of their form.
+/// Returns skin settings with the bark of a look, and leaves with the veins of their form.
 pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec {
     let kind = match look.bark {
         Bark::Furrowed => BarkKind::Furrowed,
@@ -152,7 +153,7 @@ pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec 
         }
         BladeForm::Pinnate | BladeForm::Feather => VeinPattern::Compound,
         BladeForm::Leaflet => VeinPattern::Parallel,
-        // What has canes is a grass.
+        // Plants with canes are grasses.
         BladeForm::Lanceolate if look.bark == Bark::Cane => VeinPattern::Parallel,
         BladeForm::Needle | BladeForm::Tuft | BladeForm::Spray | BladeForm::Brush => VeinPattern::Needle,
         _ => VeinPattern::Pinnate,
@@ -162,7 +163,7 @@ pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec 
     SkinSpec { bark: Some(bark), venation: Some(venation), ..skin }
 }
 
-/// Darkens the foot of a model's trunk, where the look says so.
+/// Darkens the foot of a model's trunk, if the look has a foot colour.
 pub(super) fn paint(look: &Look, model: &mut Model) {
     let Some(foot) = look.foot_color else { return };
     // A slender tree has no part with old bark: then its stem is among the young ones.
@@ -170,7 +171,7 @@ pub(super) fn paint(look: &Look, model: &mut Model) {
     darken_foot(look, model, if old { MaterialKind::Bark } else { MaterialKind::YoungBark }, foot);
 }
 
-/// Vertex colours that turn the bark of one material into the foot's, from `foot_height` downwards.
+/// Sets vertex colours that turn the bark of one material into the foot's, from `foot_height` downwards.
 fn darken_foot(look: &Look, model: &mut Model, kind: MaterialKind, foot: Colour) {
     let bounds = model.bounds();
     let height = (bounds.max.y * look.foot_height).max(f64::MIN_POSITIVE);
@@ -186,7 +187,7 @@ fn darken_foot(look: &Look, model: &mut Model, kind: MaterialKind, foot: Colour)
         mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
         for (p, color) in mesh.positions.iter().zip(&mut mesh.colors) {
             let [x, y, z] = p.map(f64::from);
-            // Patches as large as the trunk is thick, so that the border is ragged.
+            // Patches of the size of the trunk's diameter make the border ragged.
             let patch = patches.noise(0.37 * x + 0.11 * z + 0.5, 0.31 * y + 0.17 * z + 0.5);
             let share = 1.0 - ops::smoothstep(0.25, 1.0, y / height + 0.22 * patch);
             #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
@@ -213,22 +214,22 @@ impl Lattice {
         Self { size, cells: cells.map(|(x, y)| cell(x, y)).collect() }
     }
 
-    fn at(&self, x: i64, y: i64) -> f64 {
+    fn cell(&self, x: i64, y: i64) -> f64 {
         let (nx, ny) = self.size;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the lattice")]
         let cell = (y.rem_euclid(ny) * nx + x.rem_euclid(nx)) as usize;
         self.cells[cell]
     }
 
-    /// Smooth noise between the cells, -1 to 1; u and v from 0 to 1 are one repetition.
+    /// Returns smooth noise between the cells, -1 to 1; u and v from 0 to 1 are one repetition.
     fn noise(&self, u: f64, v: f64) -> f64 {
         let (x, y) = (u * self.size.0 as f64, v * self.size.1 as f64);
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (ops::smoothstep(0.0, 1.0, x - x0), ops::smoothstep(0.0, 1.0, y - y0));
         #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
         let (i, j) = (x0 as i64, y0 as i64);
-        let low = ops::lerp(self.at(i, j), self.at(i + 1, j), fx);
-        let high = ops::lerp(self.at(i, j + 1), self.at(i + 1, j + 1), fx);
+        let low = ops::lerp(self.cell(i, j), self.cell(i + 1, j), fx);
+        let high = ops::lerp(self.cell(i, j + 1), self.cell(i + 1, j + 1), fx);
         2.0 * ops::lerp(low, high, fy) - 1.0
     }
 }

@@ -4,9 +4,9 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `evaluate` | a tree that changes: only what a change touches is made again |
-//! | `file` | TOML in; where in a text a fault is |
-//! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
+//! | `evaluate` | a tree that changes: only what a change affects is made again |
+//! | `file` | TOML input; the places of faults in a text |
+//! | `blade`, `blossom`, `look` | forms of leaves; flowers in place of leaves; colours and bark |
 //! | `presets` | the species that come with the program |
 //! | `scanned` | trees of laser scans |
 //! | `structured` | trees of files of structure |
@@ -44,13 +44,13 @@ pub use compare::{
 pub use evaluate::TreeEvaluator;
 pub(crate) use evaluate::{grow_plant, mesh_plant};
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
-pub use height::{HeightError, age_of_height};
+pub use height::{HeightError, TreeOfDbh, age_of_height, tree_of_dbh};
 pub use presets::{PRESETS, Preset};
 pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan, make_tree_of_plot};
 pub use scenery::show_obstacles;
 pub use structured::{StructureModel, StructureModelError, StructureOptions, make_from_structure};
 
-/// How a tree is meshed. Not saved with it.
+/// Options for meshing a tree. Not saved with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeOptions {
     /// Fineness, sides, textures.
@@ -60,11 +60,11 @@ pub struct TreeOptions {
     pub height_m: Option<f64>,
     /// The leaf that the tree bears instead of its spec's form. Default none.
     pub leaf: Option<LeafTemplate>,
-    /// Coarser copies and the like to make as well: each has about half of the triangles of the one before.
+    /// Coarser copies and other levels to make as well: each has about half of the triangles of the one before.
     pub levels: LevelSpec,
-    /// Edits by hand, done on the grown tree in this order.
+    /// Hand edits, applied to the grown tree in this order.
     pub edits: Vec<PlantEdit>,
-    /// What the obstacles of the spec are called in messages, in their order; those without a name have their number.
+    /// Names of the spec's obstacles in messages, in their order; those without a name have their number.
     pub obstacles: Vec<String>,
 }
 
@@ -75,33 +75,33 @@ pub struct MadeTree {
     pub grown: Grown,
     /// The finest meshes, with materials.
     pub model: Model,
-    /// What of the plant lies where in the model.
+    /// Places of the plant's parts in the model.
     pub layout: Layout,
-    /// Coarser ones.
+    /// Coarser meshes.
     pub levels: Levels,
     /// Counts, times, growth, digest, warnings.
     pub item: ItemReport,
 }
 
-/// Why no tree came out.
+/// Reason why no tree was made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TreeError {
-    /// The text of a spec is at fault.
+    /// The text of a spec is faulty.
     #[error(transparent)]
     Spec(#[from] SpecFault),
     /// Growth cannot follow the spec; the line of its text is known.
     #[error("line {line}: {error}")]
     Line {
-        /// From 1.
+        /// Line, from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         error: GrowthError,
     },
-    /// A file that a spec names could not be had.
+    /// A file that a spec names could not be read.
     #[error("the file \"{file}\" that it names cannot be read as what it is named for")]
     File {
-        /// As the spec names it.
+        /// Name of the file in the spec.
         file: String,
     },
     /// Growth cannot follow the spec.
@@ -110,7 +110,7 @@ pub enum TreeError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// It would have been too much.
+    /// The result would exceed the budget.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
 }
@@ -135,7 +135,7 @@ impl From<GrowthError> for TreeError {
 }
 
 impl GrowthReport {
-    fn of(spec: &TreeSpec, grown: &Grown, inside: Option<Inside>) -> Self {
+    fn new(spec: &TreeSpec, grown: &Grown, inside: Option<Inside>) -> Self {
         let t = &grown.tally;
         Self {
             method: method_word(&spec.method).to_owned(),
@@ -153,20 +153,20 @@ impl GrowthReport {
     }
 }
 
-/// What of a model lies inside obstacles.
+/// Parts of a model that lie inside obstacles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Inside {
-    /// Deeper than [`TOUCHING_M`].
+    /// Number of vertices deeper than [`TOUCHING_M`].
     vertices: u64,
     depth_m: f64,
 }
 
-/// Vertices may lie so deep in what they touch.
+/// Depth up to which vertices may lie in what they touch, metres.
 const TOUCHING_M: f64 = 0.001;
 
 impl Inside {
-    /// Looks at every vertex of a model. None without obstacles.
-    fn of(model: &Model, obstacles: &Obstacles) -> Option<Self> {
+    /// Checks every vertex of a model. `None` without obstacles.
+    fn measure(model: &Model, obstacles: &Obstacles) -> Option<Self> {
         if obstacles.is_empty() {
             return None;
         }
@@ -180,7 +180,7 @@ impl Inside {
     }
 }
 
-/// The word of a method in reports and on the command line.
+/// Returns the word of a method in reports and on the command line.
 pub fn method_word(method: &Method) -> &'static str {
     match method {
         Method::Colonization { .. } | Method::Points { .. } => "colonization",
@@ -194,11 +194,12 @@ pub fn method_word(method: &Method) -> &'static str {
 
 /// Grows a tree (or several that compete) and gives it its surface.
 ///
-/// A spec that names a leaf's file needs [`TreeOptions::leaf`]: the core opens no files. The same spec, options and seed give the same bits on every platform and for any executor. Growth itself is
-/// booked as `structure`, wood and leaves as `depth`, skinning as `mesh`.
+/// A spec that names a leaf's file needs [`TreeOptions::leaf`]: the core opens no files. The same spec, options and
+/// seed give the same bits on every platform and for any executor. Growth itself is booked as `structure`, wood and
+/// leaves as `depth`, skinning as `mesh`.
 ///
 /// # Errors
-/// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+/// [`TreeError`]: a fault of the spec, or cancelled.
 ///
 /// ```
 /// use burgeon::{Run, Seed, TreeOptions, TreeSpec, make_tree};
@@ -229,22 +230,22 @@ pub fn make_tree(
     Ok(MadeTree { grown, model, layout, levels, item })
 }
 
-/// An obstacle that does not bound a volume; it is borne all the same.
+/// An obstacle that does not bound a volume; it is accepted all the same.
 #[derive(Clone, Copy, Debug)]
 struct OddMesh {
     obstacle: usize,
-    /// Edges with one face only; 0 where the faces look inwards.
+    /// Edges with only one face; 0 where the faces point inwards.
     open: usize,
 }
 
 impl OddMesh {
-    fn of(obstacle: usize, shape: &Obstacle) -> Option<Self> {
+    fn check(obstacle: usize, shape: &Obstacle) -> Option<Self> {
         let Obstacle::Mesh { vertices, triangles } = shape else { return None };
         let open = growth::open_edges(vertices, triangles);
         (open > 0 || growth::signed_volume(vertices, triangles) < 0.0).then_some(Self { obstacle, open })
     }
 
-    /// `names`: of all obstacles, as far as they have any.
+    /// Warns of it. `names`: of all obstacles that have one.
     fn tell(self, names: &[String], report: &mut Report) {
         let name = names.get(self.obstacle).filter(|n| !n.is_empty());
         let obstacle = name.cloned().unwrap_or_else(|| (self.obstacle + 1).to_string());
@@ -269,7 +270,7 @@ impl OddMesh {
 }
 
 impl TreeError {
-    /// The same error, with what the obstacles are called.
+    /// Returns the same error, with the names of the obstacles.
     fn naming(self, names: &[String]) -> Self {
         let Self::Growth(mut error) = self else { return self };
         if let GrowthError::Obstacle { obstacle, name, .. }

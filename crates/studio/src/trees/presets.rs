@@ -6,11 +6,11 @@ use spec::SpecFault;
 /// A species, as TOML.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preset {
-    /// The word by which it is asked for.
+    /// Word by which it is requested.
     pub key: &'static str,
     /// Its file.
     pub toml: &'static str,
-    /// The preset that is the same tree, grown by another method: lists of species show that one only.
+    /// Preset of the same tree, grown by another method: lists of species show only that one.
     pub same_as: Option<&'static str>,
 }
 
@@ -81,7 +81,7 @@ presets![
 ];
 
 impl Preset {
-    /// The preset of a key.
+    /// Returns the preset of a key.
     ///
     /// ```
     /// assert!(burgeon::Preset::find("oak").is_some() && burgeon::Preset::find("fern").is_none());
@@ -93,20 +93,20 @@ impl Preset {
         PRESETS.iter().find(|p| p.key == key).or_else(named)
     }
 
-    /// The name of its plants, as its file has it.
+    /// Returns the name of its plants, from its file.
     pub(crate) fn title(&self) -> Option<&'static str> {
         self.toml.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'))
     }
 
-    /// The Latin name of its species, as its file has it.
+    /// Returns the Latin name of its species, from its file.
     pub fn latin(&self) -> Option<&'static str> {
         self.toml.lines().find_map(|line| line.strip_prefix("species = \"")?.strip_suffix('"'))
     }
 
-    /// Its spec.
+    /// Returns its spec.
     ///
     /// # Errors
-    /// [`SpecFault`] if the file is at fault: our bug.
+    /// [`SpecFault`] if the file is faulty: our bug.
     pub fn spec(&self) -> Result<TreeSpec, SpecFault> {
         spec::from_toml(self.toml)
     }

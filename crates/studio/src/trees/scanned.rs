@@ -5,7 +5,7 @@ use formats::ExportSpec;
 use glam::DVec3;
 use growth::{GrowthError, Look, TreeSpec};
 use plant::BladeForm;
-use scan::{FoundTree, Plot, ScanTreeError, TreeScanSpec, find_tree};
+use scan::{FoundTree, Plot, ScanPoints, ScanTreeError, TreeScanSpec, find_tree};
 use skin::SkinSpec;
 
 use super::evaluate::skinned;
@@ -14,34 +14,35 @@ use super::structured::bear_leaves;
 use crate::checks::check_scan;
 use crate::made::MadePlant;
 
-/// How a scan becomes a tree. Not saved with it.
+/// Options for turning a scan into a tree. Not saved with it.
 #[derive(Clone, Debug, Default)]
 pub struct ScanTreeOptions {
-    /// How the tree is sought.
+    /// Settings for finding the tree.
     pub scan: TreeScanSpec,
-    /// The species whose leaves, and colours of bark, it gets; default none: a bare tree.
+    /// Species that gives it leaves and colours of bark; default none: a bare tree.
     pub leaves: Option<TreeSpec>,
     /// Fineness, sides, textures.
     pub skin: SkinSpec,
 }
 
-/// Why no tree came out of a scan.
+/// Reason why no tree was made of a scan.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScannedTreeError {
-    /// There is none in it.
+    /// The scan has no tree.
     #[error(transparent)]
     Scan(ScanTreeError),
-    /// The leaves of the species cannot be set.
+    /// The leaves of the species cannot be placed.
     #[error(transparent)]
     Leaves(GrowthError),
-    /// The user asked to stop, or it would have been too much.
+    /// The user asked to stop, or the result would exceed the budget.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
 impl ScannedTreeError {
-    /// The same with places in the coordinates of the scan: with its axes, in its unit, with what was taken off it, metres.
+    /// Returns the same error with places in the coordinates of the scan: in its axes and its unit, with the subtracted
+    /// offset added, metres.
     #[must_use]
     pub fn in_scan(self, axes: &ExportSpec, offset_m: DVec3) -> Self {
         let given = |[x, z]: [f64; 2]| {
@@ -84,14 +85,14 @@ impl From<GrowthError> for ScannedTreeError {
 
 /// Finds the tree of a laser scan (metres, +Y up), gives it leaves of a species if asked for, and its surface.
 ///
-/// The plant stands at the origin; [`FoundTree::foot`] is where it stood. The same points, options and seed give the
-/// same bits for any executor.
+/// The plant stands at the origin; [`FoundTree::foot`] is its original place. The same points, options and seed give
+/// the same bits for any executor.
 ///
 /// # Errors
 /// [`ScannedTreeError`].
-pub fn make_tree_from_scan(
+pub fn make_tree_from_scan<'a>(
     name: &str,
-    points: &[DVec3],
+    points: impl Into<ScanPoints<'a>>,
     options: &ScanTreeOptions,
     seed: Seed,
     run: &Run<'_>,
@@ -100,7 +101,7 @@ pub fn make_tree_from_scan(
     made(name, (options, is_placed), seed, run, |r| find_tree(points, &options.scan, run, r))
 }
 
-/// The same of one tree of a plot.
+/// Makes one tree of a plot in the same way.
 ///
 /// # Errors
 /// [`ScannedTreeError`].
@@ -134,7 +135,7 @@ fn made(
     let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, run))?;
     let mut made = MadePlant::untold(plant, (model, from.0), (vec![], &[]), &report)
         .check(|r| check_scan(&found.plant, &found.tally, is_placed, r))
-        .told();
+        .with_digest();
     made.item.plant = Some(made.plant.measure());
     Ok((made, found))
 }

@@ -1,18 +1,18 @@
-//! What a tree grew around, for its picture.
+//! Obstacles of a tree, for its picture.
 //!
-//! `Obstacles + Model -> Model with one part more`
+//! `Obstacles + Model -> Model with one more part`
 
 use base::ops;
 use glam::DVec3;
 use growth::Obstacle;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
-// Corners around balls and cylinders.
+// Number of corners around balls and cylinders.
 const AROUND: u32 = 32;
 
 /// Adds the obstacles of a spec to a model that is to be drawn, as one plain grey part with flat faces.
 ///
-/// Planes have no end and are left out; so are triangles of a mesh that name vertices that it does not have.
+/// Planes have no end and are left out; so are triangles of a mesh that refer to missing vertices.
 ///
 /// ```
 /// use burgeon::{growth::Obstacle, mesh::Model, show_obstacles};
@@ -41,14 +41,14 @@ pub fn show_obstacles(model: &mut Model, obstacles: &[Obstacle]) {
         return;
     }
     let mut grey = Material::plain("obstacle", MaterialKind::Other, [0.42, 0.40, 0.37]);
-    // Faces of a mesh may look inwards.
+    // Faces of a mesh may point inwards.
     grey.double_sided = true;
     model.materials.push(grey);
     let material = MaterialId::new(model.materials.len() - 1);
     model.parts.push(Part { name: "obstacles".into(), material, mesh });
 }
 
-/// The triangles of an obstacle.
+/// Returns the triangles of an obstacle.
 fn faces(obstacle: &Obstacle) -> Vec<[DVec3; 3]> {
     match obstacle {
         Obstacle::Box { min, max } => {
@@ -78,12 +78,12 @@ fn faces(obstacle: &Obstacle) -> Vec<[DVec3; 3]> {
     }
 }
 
-/// Two triangles that turn the way their corners do.
+/// Returns two triangles with the orientation of their corners.
 fn quad([a, b, c, d]: [DVec3; 4]) -> [[DVec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// A line of (radius, height) turned about the vertical.
+/// Rotates a line of (radius, height) about the vertical.
 fn turned(base: DVec3, line: &[(f64, f64)]) -> Vec<[DVec3; 3]> {
     let at = |(radius, height): (f64, f64), j: u32| {
         let (sin, cos) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(AROUND));

@@ -1,4 +1,4 @@
-//! Plants that are read from files of structure -> plants with leaves, edits and meshes.
+//! Plants read from files of structure -> plants with leaves, edits and meshes.
 
 use base::{Cancelled, Report, Run, Seed, Stopped};
 use document::PlantEdit;
@@ -15,25 +15,25 @@ use crate::checks::check_structure;
 use crate::made::MadePlant;
 use crate::shaping::shaped;
 
-/// How a plant that was read becomes a model. Not saved with it.
+/// Options for turning a plant that was read into a model. Not saved with it.
 #[derive(Clone, Debug, Default)]
 pub struct StructureOptions {
-    /// The species whose leaves, and colours of bark, it gets instead of those that it has; default none.
+    /// Species whose leaves and colours of bark replace its own; default none.
     pub leaves: Option<TreeSpec>,
     /// Fineness, sides, textures.
     pub skin: SkinSpec,
-    /// Edits by hand, done on the plant in this order, before it gets leaves.
+    /// Hand edits, applied to the plant in this order, before it gets leaves.
     pub edits: Vec<PlantEdit>,
 }
 
-/// Why no model came out of a plant that was read.
+/// Reason why no model was made of a plant that was read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StructureModelError {
-    /// The leaves of the species cannot be set.
+    /// The leaves of the species cannot be placed.
     #[error(transparent)]
     Leaves(GrowthError),
-    /// The user asked to stop, or it would have been too much.
+    /// The user asked to stop, or the result would exceed the budget.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -54,22 +54,22 @@ impl From<Cancelled> for StructureModelError {
     }
 }
 
-/// A plant that was read, with its meshes, and where it stood.
+/// A plant that was read, with its meshes, and its original place.
 #[derive(Clone, Debug)]
 pub struct StructureModel {
     /// The plant, which stands at the origin.
     pub made: MadePlant,
-    /// What was taken off its coordinates, metres, +Y up; zero where it stood at the origin already.
+    /// Offset subtracted from its coordinates, metres, +Y up; zero where it stood at the origin already.
     pub foot: DVec3,
 }
 
-/// A plant nearer to the origin than this stays where it is, metres.
+/// Distance from the origin within which a plant stays in place, metres.
 const AT_ORIGIN_M: f64 = 1e-3;
 
 /// Gives a plant that was read ([`formats::read_structure`]) edits, leaves of a species and its surface.
 ///
-/// The plant is moved so that it stands at the origin: of several stems the middle of their feet, at the height of the lowest.
-/// The same plant, options and seed give the same bits for any executor.
+/// The plant is moved so that it stands at the origin: for several stems the middle of their feet, at the height of the
+/// lowest. The same plant, options and seed give the same bits for any executor.
 ///
 /// # Errors
 /// [`StructureModelError`].
@@ -104,12 +104,12 @@ pub fn make_from_structure(
     let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, run))?;
     let mut made = MadePlant::untold(plant, (model, from.0), (edits, &options.edits), &report)
         .check(|r| check_structure(tally, r))
-        .told();
+        .with_digest();
     made.item.plant = Some(made.plant.measure());
     Ok(StructureModel { made, foot })
 }
 
-/// Sets the leaves of a species on the thin wood of a plant that did not grow by its rules.
+/// Puts the leaves of a species on the thin wood of a plant that did not grow by its rules.
 pub(super) fn bear_leaves(
     plant: &mut Plant,
     species: &TreeSpec,
@@ -118,7 +118,7 @@ pub(super) fn bear_leaves(
     report: &mut Report,
 ) -> Result<(), GrowthError> {
     let mut foliage = species.leaves.clone();
-    // What was measured is thicker at its ends than a species' twigs: leaves sit on what is thin here.
+    // Measured wood is thicker at its ends than a species' twigs: leaves sit on the wood that is thin in this plant.
     let mut tips: Vec<f64> =
         plant.axes.iter().map(|a| plant.nodes.radius_m[a.nodes.end as usize - 1]).collect();
     base::sort_numbers(&mut tips);
@@ -130,7 +130,7 @@ pub(super) fn bear_leaves(
     Ok(())
 }
 
-/// Moves a plant to the origin; what was taken off its coordinates.
+/// Moves a plant to the origin; returns the subtracted offset.
 fn stand_at_origin(plant: &mut Plant) -> DVec3 {
     let feet: Vec<DVec3> = plant
         .axes

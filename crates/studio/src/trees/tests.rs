@@ -14,7 +14,7 @@ fn plain(spec: &TreeSpec) -> MadeTree {
 
 fn young(key: &str) -> TreeSpec {
     let spec = Preset::find(key).expect("a preset").spec().expect("sound");
-    // A few rounds are enough for what is asked here, and quick.
+    // A few rounds are enough for these tests, and quick.
     let age = match &spec.method {
         Method::SelfOrganizing(_) => Some(9),
         _ => spec.age,
@@ -65,7 +65,7 @@ fn a_tree_has_its_model_its_report_and_its_colours() {
     assert!((60..130).contains(&mean), "an alder's bark is dark: {mean}");
 }
 
-/// Keys of its leaves, and the share of them that are more red than green.
+/// Returns the keys of its leaves, and the share of them that are more red than green.
 fn leaves_in(spec: &TreeSpec, season: f64) -> (std::collections::BTreeSet<u64>, f64) {
     let mut spec = spec.clone();
     spec.look.season = season;
@@ -102,7 +102,7 @@ fn leaves_turn_and_fall_one_by_one_and_evergreens_keep_theirs() {
     let summer = plain(&spruce).item.digest;
     spruce.look.season = 0.9;
     assert_eq!(plain(&spruce).item.digest, summer);
-    // What flowers in spring does not in autumn.
+    // Plants that flower in spring do not in autumn.
     let mut rose = young("rose");
     rose.look.season = 0.4;
     let counts = plain(&rose).item.counts;
@@ -134,11 +134,11 @@ fn leaves_unfold_one_by_one_lighter_than_in_summer() {
             assert!(now > area && light > 1.05 * size(&spec, 0.0).1, "{key} at {season}: {now} after {area}");
             (last, area) = (leaves, now);
         }
-        // Just before summer it is what it is in summer, within a part in a million.
+        // Just before summer its size is that in summer, within a part in a million.
         let ((before, _), (summer, _)) = (size(&spec, -1e-7), size(&spec, 0.0));
         assert!(leaves_in(&spec, -1e-7).0 == all && (before / summer - 1.0).abs() < 1e-6, "{key}");
     }
-    // A birch's leaves follow one another, a beech's come together.
+    // A birch's leaves appear successively, a beech's together.
     let share = |key: &str| {
         let spec = young(key);
         leaves_in(&spec, -0.8).0.len() as f64 / leaves_in(&spec, 0.0).0.len() as f64
@@ -157,7 +157,7 @@ fn leaves_unfold_one_by_one_lighter_than_in_summer() {
 
 #[test]
 fn a_beech_turns_from_its_outside_and_a_birch_from_its_inside() {
-    // Mean distance from the trunk of the leaves that are left, over that of all.
+    // Returns the mean distance from the trunk of the remaining leaves, over that of all.
     let out = |key: &str, season: f64| {
         let mut spec = young(key);
         spec.look.season = season;
@@ -204,9 +204,9 @@ fn levels_of_detail_become_coarser_and_stay_sound() {
     }
 }
 
-/// Lengths of leaves, or of a pine's needles, in cm, as floras state them for leaves of normal shoots. B: Bean, Trees and
-/// Shrubs Hardy in the British Isles. S: Stace, New Flora of the British Isles. F: Flora of China. The blade without its
-/// stalk; of compound leaves the whole leaf.
+/// Lengths of leaves, or of a pine's needles, in cm, as floras state them for leaves of normal shoots. B: Bean, Trees
+/// and Shrubs Hardy in the British Isles. S: Stace, New Flora of the British Isles. F: Flora of China. The blade
+/// without its stalk; for compound leaves the whole leaf.
 const LEAVES_CM: [(&str, f64, f64); 23] = [
     ("oak", 6.0, 14.0), // B, S: Quercus robur
     ("oak-colonization", 6.0, 14.0),
@@ -248,8 +248,8 @@ fn leaves_as_made_have_the_size_of_their_species() {
         let share = within as f64 / lengths.len() as f64;
         assert!(share > 0.95 && lengths.len() > 100, "{key}: {share} of {} leaves", lengths.len());
     }
-    // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm, Cedrus libani 1.5 to 3.5 cm.
-    // F: Cunninghamia lanceolata 0.8 to 6.5 cm; of the others the presets say where.
+    // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm, Cedrus libani 1.5 to 3.5
+    // cm. F: Cunninghamia lanceolata 0.8 to 6.5 cm; the presets cite sources for the others.
     let needles = [
         ("pine", 2.0, 8.0),
         ("umbrella-pine", 8.0, 20.0),
@@ -275,7 +275,7 @@ fn leaves_as_made_have_the_size_of_their_species() {
     }
 }
 
-/// Area of what hangs in the crown, m2, and triangles.
+/// Returns the area of the organs in the crown, m2, and their triangles.
 fn weight(model: &Model) -> (f64, usize) {
     let crown = model.parts.iter().filter(|p| ["leaves", "petals", "discs"].contains(&p.name.as_str()));
     let area = |m: &mesh::TriMesh| -> f64 {
@@ -295,7 +295,7 @@ fn every_species_gets_lighter_level_by_level_and_keeps_its_leaves() {
         let (whole, mut last) = weight(&made.model);
         for (level, lod) in (1..).zip(&made.levels.lods) {
             let (area, n) = weight(lod);
-            // Few fronds, blades of grass or limbs are not made fewer: such a level is light as it is.
+            // Few fronds, blades of grass or limbs are not reduced: such a level is light already.
             let few = last < 8_000 && n <= last;
             assert!(n < last * 7 / 10 || few, "{}, level {level}: {n} triangles after {last}", preset.key);
             last = n;
@@ -347,7 +347,7 @@ fn only_what_a_change_touches_is_made_again() {
     let (mut options, run) = (TreeOptions::default(), Run::plain());
     options.skin.detail = 0.3;
     let mut kept = TreeEvaluator::default();
-    // What an update did again, after checking that a fresh one gives the same.
+    // Returns the stages that an update recomputed, after checking that a fresh one gives the same.
     let mut step = |spec: &TreeSpec, seed: u64, options: &TreeOptions| {
         let item = kept.update(spec, Seed::new(seed), options, &run).expect("sound");
         let fresh = make_tree(spec, Seed::new(seed), options, &run).expect("sound");
@@ -388,7 +388,7 @@ fn only_what_a_change_touches_is_made_again() {
     assert_eq!(step(&spec, 2, &options).0, "shape mesh");
 }
 
-/// Asks to stop when work is shared out for the n-th time.
+/// Asks to stop when work is distributed for the n-th time.
 #[derive(Debug)]
 struct StopAt<'a>(std::sync::atomic::AtomicUsize, &'a CancelToken);
 
@@ -417,7 +417,7 @@ fn a_tree_that_was_left_half_edited_is_still_there() {
     let edit = shape::HandEdit::Prune { axis: shape::AxisKey::Path(vec![0, 0]), at: 0.0 };
     let mut stopped = 0;
     for n in 1..30 {
-        editor.run(ShapeCommand::Add(edit.clone().into()).of(tree)).expect("sound");
+        editor.run(ShapeCommand::Add(edit.clone().into()).for_plant(tree)).expect("sound");
         let cancel = CancelToken::new();
         let executor = StopAt(n.into(), &cancel);
         let run = Run { cancel: &cancel, executor: &executor, ..Run::plain() };
@@ -456,7 +456,7 @@ fn a_look_has_no_digest_and_what_follows_it_has() {
             scene.get(plant).expect("made").report().digest
         };
         let whole = digest(&editor, false);
-        editor.run(ShapeCommand::Add(edit.clone().into()).of(plant)).expect("sound");
+        editor.run(ShapeCommand::Add(edit.clone().into()).for_plant(plant)).expect("sound");
         assert_eq!(digest(&editor, true), "");
         let cut = digest(&editor, false);
         assert!(!cut.is_empty() && cut != whole, "of the same document as the look");
@@ -497,7 +497,7 @@ fn copies_share_one_result_until_one_of_them_changes() {
         let two = update(copy, &editor);
         assert_eq!((one.0, one.1, one.4), (two.0, two.1, two.4), "one model, one number, the same memory");
         assert_eq!((one.2.digest, two.3), (two.2.digest, 0), "and nothing was made");
-        editor.run(PlantCommand::SetSeed(Seed::new(77)).of(copy)).expect("sound");
+        editor.run(PlantCommand::SetSeed(Seed::new(77)).for_plant(copy)).expect("sound");
         let other = update(copy, &editor);
         let same = update(first, &editor);
         assert!(other.1 != one.1 && other.0 != one.0, "another plant by now");
@@ -517,7 +517,7 @@ fn the_name_of_a_tree_is_no_reason_to_grow_it() {
     let tree = editor.document().plants()[1].id();
     let mut scene = crate::SceneEvaluator::default();
     scene.update(tree, editor.document(), &Run::plain()).expect("sound");
-    editor.run(PlantCommand::Rename("an elder".into()).of(tree)).expect("sound");
+    editor.run(PlantCommand::Rename("an elder".into()).for_plant(tree)).expect("sound");
     scene.update(tree, editor.document(), &Run::plain()).expect("sound");
     let made = scene.get(tree).expect("made");
     assert_eq!((made.report().name.as_str(), made.stages.len()), ("an elder", 0));
@@ -536,8 +536,9 @@ fn vertices_inside_obstacles_are_counted_with_the_deepest() {
     ];
     let model = Model { parts, ..Model::default() };
     let block = Obstacle::Box { min: DVec3::new(1.0, -9.0, -9.0), max: DVec3::new(2.0, 9.0, 9.0) };
-    let inside = Inside::of(&model, &Obstacles::new(&[block], 0.0).expect("sound")).expect("there is one");
+    let inside =
+        Inside::measure(&model, &Obstacles::new(&[block], 0.0).expect("sound")).expect("there is one");
     assert_eq!(inside.vertices, 4, "two of each part, and what is 0.5 mm away from it is not");
     assert!((inside.depth_m - 0.5).abs() < 1e-6, "{}", inside.depth_m);
-    assert_eq!(Inside::of(&model, &Obstacles::none()), None);
+    assert_eq!(Inside::measure(&model, &Obstacles::none()), None);
 }

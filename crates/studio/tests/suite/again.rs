@@ -1,4 +1,4 @@
-//! Plants of drawings that change: what is taken over from the last time gives the same bits as a fresh start.
+//! Plants of drawings that change: results taken over from the last update have the same bits as a fresh start.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -97,7 +97,7 @@ fn a_preview_of_a_crown_is_coarse_and_what_follows_is_whole() {
         look.update(&drawing, &options, seed, &run).expect("a plant");
         let mut whole = Evaluator::default();
         whole.update(&drawing, &options, seed, &run).expect("a plant");
-        // The plant is the same; only what is seen of a large one is coarser, as large as it is.
+        // The plant is the same; only the view of a large one is coarser, and of the same size.
         assert_eq!(look.plant().map(|p| &p.organs), whole.plant().map(|p| &p.organs), "{name}");
         let [coarse, fine] = [&look, &whole].map(|e| e.model().expect("a model"));
         assert_eq!(coarse.validate().next(), None);
@@ -108,14 +108,14 @@ fn a_preview_of_a_crown_is_coarse_and_what_follows_is_whole() {
     }
 }
 
-/// A turn, of the tangent of its half.
+/// Returns a rotation, given the tangent of half its angle.
 fn turned(half: f64) -> DVec2 {
     DVec2::new(1.0 - half * half, 2.0 * half) / (1.0 + half * half)
 }
 
-/// Blades, lines and rings of many sizes, side by side.
+/// Draws blades, lines and rings of many sizes, next to one another.
 fn many(count: u32) -> Drawing {
-    let step = turned(0.0807); // 39 of them are once round
+    let step = turned(0.0807); // 39 of them are one round
     let line = |s: u32| {
         let at = 20.0 * DVec2::new(f64::from(s % 30), f64::from(s / 30));
         let (turn, size) = (turned(0.3 * f64::from(s % 9)), 5.0 + f64::from(s % 5));
@@ -151,7 +151,7 @@ fn a_large_drawing_that_grows_gives_what_a_fresh_start_gives() {
         Drawing::from_polylines("", &[line]).strokes.remove(0)
     };
     let at = DVec2::new(301.0, 227.0);
-    // The sixth is one of the next that tell of the whole.
+    // The sixth is among the strokes that describe the whole.
     for (k, to) in [(3.0, 4.0), (90.0, 170.0), (-2.0, 7.0), (11.0, 0.5), (-40.0, 60.0), (5.0, 5.0)]
         .into_iter()
         .enumerate()

@@ -1,4 +1,4 @@
-//! Colours of scans on what is made of them, against known ones and against points that were kept back.
+//! Colours of scans on the plants made of them, compared with known ones and with points that were kept back.
 
 use crate::missing;
 use std::sync::Arc;
@@ -20,23 +20,23 @@ type Colour = [f64; 3];
 const GREEN: Colour = [60.0, 130.0, 40.0];
 const BROWN: Colour = [130.0, 90.0, 40.0];
 
-/// What a leaf of 60 x 36 mm is painted with: one half green with pale veins, the other brown.
+/// Returns the paint of a leaf of 60 x 36 mm: one half green with pale veins, the other brown.
 fn painted(x: f64, y: f64) -> Colour {
     let vein = (0.5 - (y + x.abs()).rem_euclid(0.008) / 0.008).abs() > 0.42;
     let [r, g, b] = if x < 0.0 { GREEN } else { BROWN };
     if vein && x < 0.0 { [r + 60.0, g + 50.0, b + 50.0] } else { [r, g, b] }
 }
 
-fn at(x: f64, y: f64) -> DVec3 {
+fn blade_point(x: f64, y: f64) -> DVec3 {
     DVec3::new(x, 0.25 * x.abs() - 6.0 * (y - 0.01) * (y - 0.01), -y)
 }
 
-/// How far inside of the margin a place is, metres; negative outside.
+/// Returns how far inside the margin a place is, metres; negative outside.
 fn inside(x: f64, y: f64) -> f64 {
     0.018 * ops::sin(ops::PI * (y / 0.06)).max(0.0) - x.abs()
 }
 
-/// Places spread over the blade.
+/// Returns places spread over the blade.
 fn spread(s: &mut Stream, count: usize) -> Vec<(f64, f64)> {
     let mut out = Vec::with_capacity(count);
     while out.len() < count {
@@ -57,33 +57,35 @@ fn bytes(c: Colour) -> [u8; 3] {
     c.map(|x| x.round().clamp(0.0, 255.0) as u8)
 }
 
-/// A scan of the leaf: noise of 0.1 mm and of 12 of 255 in each colour, a hole, and along the margin points that are half of
-/// a pale ground.
+/// Makes a scan of the leaf: noise of 0.1 mm and of 12 of 255 in each colour, a hole, and points along the margin that
+/// are half of a pale ground.
 fn scan(count: usize, seed: u64) -> PointCloud {
     let mut s = Seed::new(seed).stream(Draw::Test);
     let mut cloud = PointCloud::default();
     for (x, y) in spread(&mut s, count).into_iter().filter(|p| !in_hole(p.0, p.1)) {
         let mixed = if inside(x, y) < 0.0005 { 0.5 } else { 0.0 };
         let seen = painted(x, y).map(|c| ops::lerp(c, 235.0, mixed) + 12.0 * s.normal());
-        cloud.points.push(at(x, y) + 0.0001 * DVec3::new(s.normal(), s.normal(), s.normal()));
+        cloud.points.push(blade_point(x, y) + 0.0001 * DVec3::new(s.normal(), s.normal(), s.normal()));
         cloud.colors.push(bytes(seen));
     }
     for k in 0..count / 16 {
         let (t, a) = (s.range(0.0, 0.04), s.range(0.0, ops::TAU));
-        cloud.points.push(DVec3::new(0.001 * ops::cos(a), 0.3 * t + 0.001 * ops::sin(a), t) + at(0.0, 0.0));
+        cloud
+            .points
+            .push(DVec3::new(0.001 * ops::cos(a), 0.3 * t + 0.001 * ops::sin(a), t) + blade_point(0.0, 0.0));
         cloud.colors.push(if k % 9 == 0 { [235; 3] } else { [120, 50, 60] });
     }
     cloud
 }
 
-/// The textures of the leaves of a plant, to be asked at places.
+/// Textures of the leaves of a plant, to be sampled at places.
 struct Painting {
     tree: KdTree,
     texels: Vec<[u8; 3]>,
 }
 
 impl Painting {
-    fn of(made: &MadePlant) -> Self {
+    fn from_made(made: &MadePlant) -> Self {
         let (mut places, mut texels) = (Vec::new(), Vec::new());
         for organ in &made.plant.organs {
             let Shape::Sheet(sheet) = &made.plant.shapes[organ.shape.index()] else { panic!("a sheet") };
@@ -110,7 +112,7 @@ impl Painting {
         Self { tree: KdTree::new(&places), texels }
     }
 
-    fn at(&self, p: DVec3) -> [u8; 3] {
+    fn color_at(&self, p: DVec3) -> [u8; 3] {
         self.texels[self.tree.nearest(p, f64::INFINITY).expect("a place")]
     }
 }
@@ -122,24 +124,24 @@ fn texel(texture: &Texture, u: f64, v: f64) -> [u8; 3] {
     [0, 1, 2].map(|k| texture.pixels[at + k])
 }
 
-/// Mean over the three colours, of 255.
+/// Returns the mean difference of the three colours, of 255.
 fn apart(a: [u8; 3], b: [u8; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>() / 3.0
 }
 
-/// Mean over the three lights, each 0 to 255.
+/// Returns the mean difference of the three channels in linear light, each 0 to 255.
 fn apart_in_light(a: [u8; 3], b: [u8; 3]) -> f64 {
     let light = |b: u8| 85.0 * linear_of_srgb(f64::from(b) / 255.0);
     a.iter().zip(b).map(|(a, b)| (light(*a) - light(b)).abs()).sum()
 }
 
-/// The mean square over the three lights, each 0 to 255: what the mean makes least.
+/// Returns the mean square difference of the three channels in linear light, each 0 to 255, which the mean minimises.
 fn square(a: [u8; 3], b: [u8; 3]) -> f64 {
     let light = |b: u8| 255.0 * linear_of_srgb(f64::from(b) / 255.0);
     a.iter().zip(b).map(|(a, b)| (light(*a) - light(b)) * (light(*a) - light(b))).sum::<f64>() / 3.0
 }
 
-/// The mean of the light of colours: the answer of who knows nothing but that.
+/// Returns the mean of colours in linear light: the best constant prediction.
 fn one_colour(colors: &[[u8; 3]]) -> [u8; 3] {
     let mean = |k: usize| {
         let light = colors.iter().map(|c| linear_of_srgb(f64::from(c[k]) / 255.0)).sum::<f64>();
@@ -163,14 +165,16 @@ fn a_painted_leaf_is_found_with_its_colours() {
         let cloud = scan(count, 7);
         let made = leaf(&cloud);
         assert_eq!((made.model.validate().next(), made.plant.validate().next()), (None, None));
-        let painting = Painting::of(&made);
+        let painting = Painting::from_made(&made);
         let places = spread(&mut Seed::new(8).stream(Draw::Test), 4000);
         let truth: Vec<[u8; 3]> = places.iter().map(|&(x, y)| bytes(painted(x, y))).collect();
         let trivial = one_colour(&truth);
         let errors = |wanted: &dyn Fn(f64, f64) -> bool, plain: bool| {
             let rows = places.iter().zip(&truth).filter(|((x, y), _)| wanted(*x, *y));
             let rows: Vec<f64> = rows
-                .map(|(&(x, y), t)| apart(if plain { trivial } else { painting.at(at(x, y)) }, *t))
+                .map(|(&(x, y), t)| {
+                    apart(if plain { trivial } else { painting.color_at(blade_point(x, y)) }, *t)
+                })
                 .collect();
             mean(rows.into_iter())
         };
@@ -204,7 +208,7 @@ fn colours_do_not_depend_on_threads_and_none_change_nothing() {
     let back = make_leaf_from_scan("t", &cloud, &ScanSpec::default(), &run).expect("a leaf").0;
     let made = leaf(&cloud);
     assert_eq!((&made.model, &made.plant), (&back.model, &back.plant));
-    // Wholly black is no colour, and colours that are not one a point are none.
+    // Black points alone give no colour, nor do colours whose number is not that of the points.
     let bare = leaf(&PointCloud { colors: vec![], ..cloud.clone() });
     let black = leaf(&PointCloud { colors: vec![[0; 3]; cloud.points.len()], ..cloud.clone() });
     let ragged = leaf(&PointCloud { colors: vec![[9; 3]; 5], ..cloud.clone() });
@@ -244,7 +248,7 @@ fn points_of_our_own_scan_that_were_kept_back_are_predicted() {
     predicted("leaf.txt", &cloud.expect("a cloud"));
 }
 
-/// One point of ten is kept back: the leaf of the others, and of a half and a quarter of them, has its colour there.
+/// Keeps one point of ten back: the leaf of the others, and of a half and a quarter of them, has its colour there.
 #[expect(clippy::print_stdout, reason = "figures for whoever looks for them")]
 fn predicted(name: &str, cloud: &PointCloud) {
     for step in [1, 2, 4] {
@@ -252,7 +256,7 @@ fn predicted(name: &str, cloud: &PointCloud) {
             let of = move |k: &usize| (k % 10 == 9) == back && (back || k.is_multiple_of(step));
             (0..cloud.points.len()).filter(of).collect::<Vec<usize>>()
         };
-        // At the margin a part of the beam goes past the leaf, and what comes back is darker than the leaf.
+        // At the margin a part of the beam passes the leaf, and the rest returns darker than the leaf.
         let all = KdTree::new(&cloud.points);
         let well_inside = |k: &usize| {
             let (p, mut near) = (cloud.points[*k], Vec::new());
@@ -262,13 +266,13 @@ fn predicted(name: &str, cloud: &PointCloud) {
         };
         let known = cloud.select(&rows(false));
         let kept_back = cloud.select(&rows(true).into_iter().filter(well_inside).collect::<Vec<_>>());
-        let painting = Painting::of(&leaf(&known));
+        let painting = Painting::from_made(&leaf(&known));
         let trivial = one_colour(&known.colors);
         let pairs = || kept_back.points.iter().zip(&kept_back.colors);
         let root = f64::sqrt;
-        let error = root(mean(pairs().map(|(p, c)| square(painting.at(*p), *c))));
+        let error = root(mean(pairs().map(|(p, c)| square(painting.color_at(*p), *c))));
         let plain = root(mean(pairs().map(|(_, c)| square(trivial, *c))));
-        // One point is mostly noise: also the means of those within 4 mm.
+        // A single point is mostly noise, so the means of those within 4 mm are compared, too.
         let tree = KdTree::new(&kept_back.points);
         let around = |p: DVec3| {
             let mut near = Vec::new();
@@ -279,12 +283,12 @@ fn predicted(name: &str, cloud: &PointCloud) {
             kept_back.points.iter().map(|p| one_colour(&kept_back.select(&around(*p)).colors)).collect();
         let ours = |p: DVec3| {
             let texels: Vec<[u8; 3]> =
-                around(p).into_iter().map(|k| painting.at(kept_back.points[k])).collect();
+                around(p).into_iter().map(|k| painting.color_at(kept_back.points[k])).collect();
             one_colour(&texels)
         };
         let even = mean(kept_back.points.iter().zip(&truth).map(|(p, t)| apart_in_light(ours(*p), *t)));
         let plainly = mean(truth.iter().map(|t| apart_in_light(trivial, *t)));
-        // What neighbours can tell at all.
+        // The best prediction from neighbours.
         let known_tree = KdTree::new(&known.points);
         let sixteen = |p: DVec3| {
             let (mut gaps, mut near) = ([0.0; 16], Vec::new());
@@ -300,7 +304,7 @@ fn predicted(name: &str, cloud: &PointCloud) {
     }
 }
 
-/// A seedling: a brown stem and two leaves, the first of the colour given, the second green.
+/// Makes a seedling: a brown stem and two leaves, the first of the colour given, the second green.
 fn seedling(first: [u8; 3]) -> PointCloud {
     let mut s = Seed::new(5).stream(Draw::Test);
     let mut cloud = PointCloud::default();
@@ -339,12 +343,12 @@ fn a_seedling_between_two_days_has_the_mean_of_their_colours() {
         let made = days.plant("t", (day, None), &options, &Run::plain()).expect("a plant");
         assert_eq!((made.model.validate().next(), made.plant.validate().next()), (None, None));
         assert_eq!(made.plant.organs.len(), 2);
-        let painting = Painting::of(&made);
+        let painting = Painting::from_made(&made);
         let (sin, cos) = ops::sin_cos(0.3);
-        let found = painting.at(DVec3::new(0.06 * cos, 0.038, 0.06 * sin));
+        let found = painting.color_at(DVec3::new(0.06 * cos, 0.038, 0.06 * sin));
         assert!(apart(found, want) < 3.0, "day {day}: {found:?}, not {want:?}");
         let (sin, cos) = ops::sin_cos(3.3);
-        let other = painting.at(DVec3::new(0.06 * cos, 0.038, 0.06 * sin));
+        let other = painting.color_at(DVec3::new(0.06 * cos, 0.038, 0.06 * sin));
         assert!(apart(other, [50, 120, 40]) < 3.0, "day {day}: {other:?}");
         let stems = made.model.parts.iter().find(|p| p.name == "stems").expect("a stem");
         let reddest = stems.mesh.colors.iter().map(|c| c[0] - c[1]).fold(f32::MIN, f32::max);

@@ -1,4 +1,5 @@
-//! Of drawings by people: what shows no plant is told, plants are not, and a reading is as likely right as its score says.
+//! Drawings by people: those that show no plant are reported, plants are not, and the score of a reading is the
+//! probability that it is right.
 
 use std::path::{Path, PathBuf};
 
@@ -9,10 +10,10 @@ use burgeon::ink::{self, Drawing};
 use burgeon::reading::{self, Kind, UNLIKE_A_PLANT};
 use burgeon::{Report, Run};
 
-/// Of so many drawings of a file one is read.
+/// One drawing of this many in a file is read.
 const EACH: usize = 8;
 
-/// Every so many drawings of a file.
+/// Returns one of every [`EACH`] drawings of a file.
 fn some(path: &Path) -> Vec<Drawing> {
     let format = match path.extension() {
         Some(e) if e == "svg" => DrawingFormat::Svg,
@@ -23,7 +24,7 @@ fn some(path: &Path) -> Vec<Drawing> {
     all.step_by(EACH).map(|d| d.unwrap_or_else(|e| panic!("{}: {e}", path.display())).drawing).collect()
 }
 
-/// The files of a folder of sketches, by name.
+/// Returns the files of a folder of sketches, by name.
 fn files(folder: &Path, sub: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder.join(sub)).unwrap_or_else(|e| panic!("{sub}: {e}"));
     let mut files: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
@@ -32,7 +33,7 @@ fn files(folder: &Path, sub: &str) -> Vec<PathBuf> {
     files
 }
 
-/// What the first plant was read as with its score, and whether the drawing was called no plant.
+/// Returns the kind of the first plant with its score, and whether the drawing was reported as no plant.
 fn read(drawing: &Drawing) -> (Kind, f64, bool) {
     let mut report = Report::default();
     let ink = ink::clean(drawing, &mut report);
@@ -41,7 +42,7 @@ fn read(drawing: &Drawing) -> (Kind, f64, bool) {
     reading.plants.first().map_or((Kind::None, 0.0, told), |p| (p.kind, p.readings[0].score, told))
 }
 
-/// How many drawings are called no plant, and how many there are.
+/// Counts the drawings reported as no plant, and all of them.
 fn count(files: &[PathBuf]) -> (usize, usize) {
     let drawings: Vec<Drawing> = files.iter().flat_map(|f| some(f)).collect();
     (drawings.iter().filter(|d| read(d).2).count(), drawings.len())

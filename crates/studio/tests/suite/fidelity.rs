@@ -1,5 +1,5 @@
-//! The reported fidelity against an oracle that looks at pictures: the model's meshes, seen from the front, as masks of
-//! pixels, and the ink as a mask of pixels.
+//! The reported fidelity compared with an oracle that uses pictures: the model's meshes, seen from the front, as masks
+//! of pixels, and the ink as a mask of pixels.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -25,9 +25,10 @@ use burgeon::{Report, Run, Seed, skin};
 const PIXELS: f64 = 800.0;
 /// Empty pixels around the drawing.
 const MARGIN: f64 = 120.0;
+/// Side of the picture, pixels.
 const SIDE: usize = 1040;
 
-/// A square picture of which each pixel is set or not.
+/// A square picture whose pixels are set or not.
 #[derive(Clone)]
 struct Mask(Vec<bool>);
 
@@ -37,7 +38,7 @@ impl Mask {
     }
 
     fn polygon(ring: &[DVec2]) -> Self {
-        let inside = geom::Inside::of(ring);
+        let inside = geom::Inside::new(ring);
         Self((0..SIDE * SIDE).map(|i| inside.has(centre(i))).collect())
     }
 
@@ -57,7 +58,7 @@ impl Mask {
         (0..=n).for_each(|k| self.dot(a.lerp(b, k as f64 / n as f64)));
     }
 
-    /// Pixels whose middle is inside, and those on the edges.
+    /// Sets the pixels whose middle is inside, and those on the edges.
     fn triangle(&mut self, t: [DVec2; 3]) {
         (0..3).for_each(|i| self.line(t[i], t[(i + 1) % 3]));
         let pixel = |p: DVec2| p * PIXELS + MARGIN;
@@ -79,13 +80,13 @@ impl Mask {
         (0..self.0.len()).filter(|&i| self.0[i]).map(centre).collect()
     }
 
-    /// Set pixels with a neighbour that is not.
+    /// Returns set pixels with a neighbour that is not set.
     fn rim(&self) -> Vec<DVec2> {
         let inner = |i: usize| [1, SIDE].iter().all(|d| self.0[i - d] && self.0[(i + d) % self.0.len()]);
         (SIDE..self.0.len()).filter(|&i| self.0[i] && !inner(i)).map(centre).collect()
     }
 
-    /// Set pixels with none that is not among three to each side.
+    /// Keeps set pixels whose neighbours up to three away are all set.
     fn inner(&self) -> Self {
         let reach = 3 * (SIDE + 1);
         let square = |i: usize| (0..7).flat_map(move |y| (0..7).map(move |x| i + y * SIDE + x - reach));
@@ -93,7 +94,7 @@ impl Mask {
         Self((0..self.0.len()).map(|i| i >= reach && i + reach < self.0.len() && inner(i)).collect())
     }
 
-    /// Whether each pixel is within `radius` of a set one.
+    /// Sets each pixel within `radius` of a set one.
     fn grown(&self, radius: f64) -> Self {
         let tree = KdTree2::new(&self.points());
         Self((0..self.0.len()).map(|i| self.0[i] || tree.nearest(centre(i), radius).is_some()).collect())
@@ -127,7 +128,7 @@ fn case(drawing: &Drawing) -> Case {
     Case { ink, reading, built, said }
 }
 
-/// What pictures tell: mean distance from ink to model, from model to ink, and overlap of contours.
+/// Figures from pictures: mean distance from ink to model, from model to ink, and overlap of contours.
 #[derive(Debug)]
 struct Seen {
     reprojection: Option<f64>,
@@ -191,7 +192,7 @@ impl Case {
         mask
     }
 
-    /// Masks of what did not grow in contours, each by itself, and whether it is more than a detail.
+    /// Returns masks of the parts that did not grow in contours, each by itself, and whether it is more than a detail.
     fn shown(&self) -> Vec<(Mask, bool)> {
         let plant = &self.built.plant;
         let grown_axis = |i: usize| self.built.grown.iter().any(|g| g.axes.contains(&i));
@@ -208,7 +209,7 @@ impl Case {
             alone.nodes.radius_m = plant.axis_radii(AxisId::new(i)).iter().map(|r| r * share).collect();
             masks.push((self.mask(&alone), true));
         }
-        // Pots are evened out, and compared with nothing.
+        // Pots are smoothed, and compared with nothing.
         let compared = |(i, o): &(usize, &Organ)| !grown_organ(*i) && o.kind != OrganKind::Pot;
         for (_, organ) in plant.organs.iter().enumerate().filter(compared) {
             let alone = Plant {
@@ -222,7 +223,7 @@ impl Case {
         masks
     }
 
-    /// A plant's meshes from the front.
+    /// Returns a plant's meshes from the front.
     fn mask(&self, plant: &Plant) -> Mask {
         let mut mask = Mask::new();
         let spec = skin::SkinSpec::default();
@@ -305,17 +306,17 @@ fn drawings(path: &Path, format: DrawingFormat) -> Vec<Drawing> {
     read_drawings(bytes.as_slice(), format, &name).filter_map(Result::ok).map(|d| d.drawing).collect()
 }
 
-/// `said` and `seen` differ by this at most, in shares of the diagonal: three pixels.
+/// Largest difference between `said` and `seen`, in shares of the diagonal: three pixels.
 const SAME: f64 = 3.0 / PIXELS;
 
-/// Drawings of people overlap and leave gaps: what lies where is a matter of a few pixels more.
+/// The same for drawings by people, which overlap and leave gaps: their regions are uncertain by a few pixels more.
 const SAME_BY_HAND: f64 = 0.01;
 
 fn percent(x: Option<f64>) -> String {
     x.map_or_else(|| "-".to_owned(), |x| format!("{:.2}", 100.0 * x))
 }
 
-/// Prints a row and says whether figures and pictures agree, distances within `same`.
+/// Prints a row and returns whether figures and pictures agree, distances within `same`.
 fn agrees(name: &str, case: &Case, same: f64) -> bool {
     let seen = case.seen();
     let said = &case.said;

@@ -1,4 +1,4 @@
-//! Levels of detail of every species: fewer triangles by half and more, as much foliage, the same picture.
+//! Levels of detail of every species: at most half of the triangles, as much foliage, the same picture.
 
 use burgeon::glam::DVec3;
 use burgeon::mesh::{AlphaMode, MaterialKind, Model, Texture};
@@ -9,7 +9,7 @@ use burgeon::{LevelSpec, PRESETS, Preset, Run, Seed, TreeOptions, make_tree};
 use crate::SPECIES;
 use crate::share::sample;
 
-/// The area of what is of these kinds, one side, without what is cut out, square metres.
+/// Returns the area of the parts of these kinds, one side, without holes of textures, square metres.
 fn area(model: &Model, is: impl Fn(MaterialKind) -> bool) -> f64 {
     let of_part = |p: &mesh::Part| {
         let look = model.material(p);
@@ -19,7 +19,7 @@ fn area(model: &Model, is: impl Fn(MaterialKind) -> bool) -> f64 {
     model.parts.iter().filter(|p| is(model.material(p).kind)).map(of_part).sum()
 }
 
-/// The area of a triangle, without the holes of its texture.
+/// Returns the area of a triangle, without the holes of its texture.
 fn triangle(m: &mesh::TriMesh, t: [u32; 3], holes: Option<&Texture>) -> f64 {
     let [a, b, c] = t.map(|i| m.position(i));
     let whole = 0.5 * (b - a).cross(c - a).length();
@@ -57,13 +57,13 @@ fn wood(kind: MaterialKind) -> bool {
 /// A picture of a model in a square, over grey.
 struct Shot {
     pixels: u32,
-    /// Colours over grey, and what covers the pixel; each 0 to 1.
+    /// Colours over grey, and the coverage of the pixel; each 0 to 1.
     seen: Vec<[f64; 4]>,
 }
 
 impl Shot {
-    /// By a camera that frames the model `whole`, whatever of a coarser one reaches out of it.
-    fn of(model: &Model, whole: &Model, pixels: u32) -> Self {
+    /// Takes it with a camera that frames the model `whole`, even if a coarser one extends beyond it.
+    fn take(model: &Model, whole: &Model, pixels: u32) -> Self {
         let spec = PictureSpec {
             width: pixels,
             height: pixels,
@@ -85,7 +85,7 @@ impl Shot {
         Self { pixels, seen: picture.chunks_exact(4).map(over).collect() }
     }
 
-    /// The same at half the size.
+    /// Returns the same at half the size.
     fn halved(&self) -> Self {
         let n = self.pixels / 2;
         let at = |x: u32, y: u32| self.seen[(y * self.pixels + x) as usize];
@@ -100,19 +100,19 @@ impl Shot {
         }
     }
 
-    /// The mean difference of all pixels, 0 to 1.
+    /// Returns the mean difference of all pixels, 0 to 1.
     fn differs(&self, other: &Self) -> f64 {
         let of = |(a, b): (&[f64; 4], &[f64; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).sum::<f64>() / 3.0;
         self.seen.iter().zip(&other.seen).map(of).sum::<f64>() / self.seen.len() as f64
     }
 
-    /// The share of the picture that shows the plant.
+    /// Returns the share of the picture that shows the plant.
     fn covers(&self) -> f64 {
         self.seen.iter().map(|p| p[3]).sum::<f64>() / self.seen.len() as f64
     }
 }
 
-/// Two tests, because each is work for one core.
+/// Two tests, because each takes one core.
 #[test]
 fn each_level_halves_the_triangles_and_keeps_the_foliage() {
     holds_of(0);
@@ -123,7 +123,7 @@ fn each_level_of_the_other_species_does_so_too() {
     holds_of(1);
 }
 
-/// Of every second species, from this one on, or a share of them.
+/// Tests every second species, from this one on, or a share of them.
 fn holds_of(first: usize) {
     let options = TreeOptions {
         skin: SkinSpec { textures: false, ..SkinSpec::default() },
@@ -136,7 +136,7 @@ fn holds_of(first: usize) {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Leaves in cards and in cards of shoots, and views from all sides: of broad leaves, needles and leaflets.
+/// Tests leaves in cards and in cards of shoots, and views from all sides: broad leaves, needles and leaflets.
 #[test]
 fn cards_and_shoots_keep_the_foliage_too() {
     let options = TreeOptions {
@@ -149,12 +149,13 @@ fn cards_and_shoots_keep_the_foliage_too() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Triangles of a level that is light however many the one before has.
+/// Triangles of a level that is light whatever the number of the one before.
 const LIGHT: usize = 4_000;
-/// At most half, rounded to percents: which leaves and flowers stay follows from their places.
+/// Largest share of the triangles of a level, a half rounded to percents: the choice of leaves and flowers follows from
+/// their places.
 const HALF: f64 = 0.505;
 
-/// What is wrong with the levels of a species.
+/// Returns the faults of the levels of a species.
 #[expect(clippy::print_stdout, reason = "figures for the table of levels in docs/exports.md")]
 fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
     let mut faults = Vec::new();
@@ -162,7 +163,7 @@ fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
     let made = make_tree(&spec, Seed::new(1), options, &Run::plain()).expect("a tree");
     let levels: Vec<&Model> = std::iter::once(&made.model).chain(&made.levels.lods).collect();
     let foliage = area(levels[0], leaf);
-    let mut fine = Shot::of(levels[0], levels[0], 192);
+    let mut fine = Shot::take(levels[0], levels[0], 192);
     for (level, pair) in levels.windows(2).enumerate() {
         let level = level + 1;
         if level > 1 {
@@ -173,7 +174,7 @@ fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
         let kept = if foliage > 0.0 && !views { area(pair[1], leaf) / foliage } else { 1.0 };
         let timber = area(pair[1], wood) / area(levels[0], wood).max(1e-9);
         // A level is for half the size of the one before.
-        let coarse = Shot::of(pair[1], levels[0], fine.pixels);
+        let coarse = Shot::take(pair[1], levels[0], fine.pixels);
         let differ = fine.differs(&coarse);
         let [whole, left] = [fine.covers(), coarse.covers()];
         println!(
@@ -182,11 +183,11 @@ fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
             pair[1].triangle_count(),
             fine.pixels,
         );
-        // A mean of colours over the whole picture; the widest crowns differ by 0.07.
+        // The mean of colours over the whole picture; the widest crowns differ by 0.07.
         if differ > 0.09 {
             faults.push(format!("{key}: the picture of level {level} differs by {differ:.3}"));
         }
-        // What has hardly any triangles left is as light as it is.
+        // A level with hardly any triangles left is as light as possible.
         if share > if pair[1].triangle_count() > LIGHT { HALF } else { 0.55 } {
             faults.push(format!("{key}: level {level} has {share:.3} of the triangles of the one before"));
         }

@@ -1,4 +1,4 @@
-//! Every species at five ages and from many seeds: what a forester would measure.
+//! Every species at five ages and from many seeds: the measures of a forester.
 
 use base::ops;
 use burgeon::growth::{Grown, Method, grow};
@@ -17,7 +17,7 @@ fn height(grown: &Grown) -> f64 {
     grown.plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max)
 }
 
-/// The thickest stem at breast height, or at its foot where it is lower than that.
+/// Returns the diameter of the thickest stem at breast height, or at its foot where it is lower than that.
 fn diameter(grown: &Grown) -> f64 {
     let plant = &grown.plant;
     let of = |axis: &Axis| {
@@ -28,7 +28,7 @@ fn diameter(grown: &Grown) -> f64 {
     plant.axes.iter().filter(|a| a.bearer.is_none()).map(of).fold(0.0, f64::max)
 }
 
-/// The median over forks of the t for which `below^t` is the sum of `above^t`.
+/// Returns the median over forks of the t for which `below^t` is the sum of `above^t`.
 fn fork_exponent(grown: &Grown) -> f64 {
     let plant = &grown.plant;
     let radius = &plant.nodes.radius_m;
@@ -43,7 +43,7 @@ fn fork_exponent(grown: &Grown) -> f64 {
     for axis in &plant.axes {
         for i in axis.nodes.start as usize + 1..axis.nodes.end as usize - 1 {
             let (below, side) = (radius[i], &sides[i]);
-            // A side branch that is next to nothing says nothing about the exponent.
+            // A negligible side branch is no evidence about the exponent.
             if side.is_empty() || side.iter().all(|r| *r < 0.5 * below) {
                 continue;
             }
@@ -79,12 +79,12 @@ fn every_species_grows_up_and_keeps_the_pipe_model() {
             let key = preset.key;
             println!("{key} at {age}: {h:.2} m, {:.1} cm, {} leaves", 100.0 * d, grown.leaves.kept);
             assert!(h >= 0.98 * last.0, "{key} at {age}: {h} m after {} m", last.0);
-            // Where breast height comes to lie in another internode, a little is no loss.
+            // Where breast height moves into another internode, a small decrease is not a loss.
             assert!(d >= 0.9 * last.1 || last.0 < 2.6, "{key} at {age}: {d} m after {} m", last.1);
             assert!(spec.bare || grown.leaves.kept >= 4, "{key} at {age}: {:?}", grown.leaves);
             last = (h, d);
         }
-        // Rules and light keep account of radii themselves.
+        // Methods by rules and by light compute radii themselves.
         if matches!(spec.method, Method::Competition(_) | Method::Colonization { .. }) {
             let (asked, t) = (spec.wood.pipe_exponent, fork_exponent(&tree(&spec, 1)));
             println!("{}: fork exponent {t:.2}, asked for {asked}", preset.key);
@@ -110,7 +110,8 @@ fn a_tree_of_one_year_is_a_seedling() {
     let mut looked_at = 0;
     for preset in PRESETS {
         let spec = preset.spec().expect(preset.key);
-        // Palms and ferns have their stem's thickness first, and baobabs their tuber; those of rules know their own youth.
+        // Palms and ferns have their stem's thickness first, and baobabs their tuber; methods by rules have their own
+        // youth.
         let by_pipes = matches!(spec.method, Method::Competition(_) | Method::Colonization { .. });
         if !by_pipes || spec.bare || spec.wood.swell > 1.0 {
             continue;
@@ -127,8 +128,8 @@ fn a_tree_of_one_year_is_a_seedling() {
     assert!(looked_at > 25, "{looked_at}");
 }
 
-/// How far the thickest stem's tip is up the tree, and the longest stretch of that stem without a branch above its lowest
-/// one, the tip included; both as shares of the height.
+/// Returns the height of the thickest stem's tip, and the longest stretch of that stem without a branch above its
+/// lowest one, including the tip; both as shares of the height.
 fn leader(grown: &Grown) -> (f64, f64) {
     let (plant, high) = (&grown.plant, height(grown));
     let stems = (0..plant.axes.len()).filter(|&a| plant.axes[a].bearer.is_none());
@@ -145,7 +146,7 @@ fn leader(grown: &Grown) -> (f64, f64) {
     (top(stem) / high, at.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max) / high)
 }
 
-/// Of the leaves above and below the middle of the crown: how far they reach aside, metres.
+/// Returns the horizontal reach of the leaves above and below the middle of the crown, metres.
 fn reaches(grown: &Grown) -> [f64; 2] {
     let mut leaves: Vec<_> = grown.plant.organs.iter().map(|o| o.frame.origin).collect();
     leaves.sort_by(|a, b| a.y.total_cmp(&b.y));
@@ -176,20 +177,20 @@ fn a_young_tree_is_no_bare_pole_above_a_bush() {
         let key = preset.key;
         println!("{key}: {young_up:.2} {young_gap:.2} {above:.2} {below:.2} {leaves:.3}");
         looked_at += 1;
-        // The stem goes on through the crown, with branches all along, and the crown's upper half is no mere shoot.
-        // Stems of olives part into limbs at half of the height.
+        // The stem continues through the crown, with branches all along, and the crown's upper half is no mere shoot.
+        // Stems of olives divide into limbs at half of the height.
         assert!(young_up > 0.5 && young_gap < 0.18, "{key}: stem {young_up} of the height, bare {young_gap}");
         assert!(above > 0.45 * below, "{key}: {above} m above {below} m");
-        // A quarter of a life makes a third of the height, and so about a tenth of the crown's surface; more of a long life's
-        // height, and of what climbs a wall.
+        // A quarter of a life gives a third of the height, and so about a tenth of the crown's surface; more of a long
+        // life's height, and of climbers on a wall.
         assert!((0.012..0.4).contains(&leaves), "{key}: {leaves} of its leaves");
     }
     assert!(looked_at > 30, "{looked_at}");
 }
 
-/// Coefficients of variation of the height and of the diameter that were measured among trees of one age and place, in
-/// percent: from the standard deviations of plots of 50-year-old birch, spruce and pine (Scientific Reports 9, 2019,
-/// PMC6825224, Table 1), widened to those of Scots pines of 30 to 38 years (Forests 14, 2023, 1779: 23 and 23).
+/// Coefficients of variation of the height and of the diameter, measured among trees of one age and place, in percent:
+/// from the standard deviations of plots of 50-year-old birch, spruce and pine (Scientific Reports 9, 2019, PMC6825224,
+/// Table 1), widened to those of Scots pines of 30 to 38 years (Forests 14, 2023, 1779: 23 and 23).
 const MEASURED: [(&str, [f64; 2], [f64; 2]); 3] = [
     ("pine", [2.0, 23.0], [5.0, 23.0]),
     ("birch", [3.0, 10.5], [10.0, 19.5]),

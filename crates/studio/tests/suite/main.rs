@@ -1,4 +1,4 @@
-//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon --test suite MODULE::`.
+//! Integration tests, linked as one program. To run one module: `cargo test -p burgeon --test suite MODULE::`.
 
 #[path = "../../../base/tests/missing/mod.rs"]
 mod missing;
@@ -15,5 +15,6 @@ mod scans;
 mod schemas;
 mod wood;
 
-/// Where a test grows a species at many ages or measures all of its meshes, each run looks at one species of so many.
+/// Number of species of which each run tests one, where a test grows a species at many ages or measures all of its
+/// meshes.
 const SPECIES: usize = 4;

@@ -25,7 +25,7 @@ fn our_own_scan_is_explained() {
     explained(std::path::Path::new(path));
 }
 
-/// A leaf of a scan in millimetres stands near all its points.
+/// Checks that a leaf of a scan in millimetres is near all its points.
 #[expect(clippy::print_stdout, reason = "figures for whoever looks for them")]
 fn explained(path: &std::path::Path) {
     let axes = ExportSpec { unit: Unit::Millimetre, ..ExportSpec::default() };

@@ -8,7 +8,7 @@ use serde_json::Value;
 use serde_json::ser::{PrettyFormatter, Serializer};
 use spec::Spec;
 
-/// A field a line, so that changes can be read; without indents, which would be downloaded.
+/// Writes one field on each line, so that changes can be read; without indents, which would be downloaded.
 fn text(schema: &Value) -> String {
     let mut out = Vec::new();
     let mut to = Serializer::with_formatter(&mut out, PrettyFormatter::with_indent(b""));
@@ -41,7 +41,7 @@ fn the_schemas_that_are_kept_are_those_of_the_types() {
     assert!(stale.is_empty(), "stale, run `cargo xtask types`: {stale:?}");
 }
 
-/// Each field, and each form where it is one of several, is there with the same range and meaning.
+/// Checks that each field, and each form where there are several, exists with the same range and meaning.
 fn part<T: Spec>() {
     let made = spec::made_schema::<T>();
     let kept = T::schema().pointer(T::PART).unwrap_or_else(|| panic!("nothing at {}", T::PART));

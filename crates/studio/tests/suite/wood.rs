@@ -1,4 +1,4 @@
-//! The wood of every species holds together: each branch grows out of the wood that bears it.
+//! The wood of every species is connected: each branch grows out of the wood that bears it.
 
 use burgeon::mesh::{Model, TriMesh};
 use burgeon::skin::SkinSpec;
@@ -17,7 +17,7 @@ struct Piece {
     high: DVec3,
 }
 
-/// The pieces of a mesh in the order of their vertices; vertices at one place are one.
+/// Returns the pieces of a mesh in the order of their vertices; vertices at one place are one.
 fn pieces(mesh: &TriMesh) -> Vec<Piece> {
     let mut parent: Vec<usize> = (0..mesh.positions.len()).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
@@ -58,7 +58,7 @@ fn pieces(mesh: &TriMesh) -> Vec<Piece> {
     found.into_values().collect()
 }
 
-/// How often a piece's surface winds around `p` (van Oosterom and Strackee 1983).
+/// Returns how often a piece's surface winds around `p` (van Oosterom and Strackee 1983).
 fn winding(piece: &Piece, p: DVec3) -> f64 {
     if p.cmplt(piece.low).any() || p.cmpgt(piece.high).any() {
         return 0.0;
@@ -72,7 +72,7 @@ fn winding(piece: &Piece, p: DVec3) -> f64 {
     piece.triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-/// The distance from `p` to a triangle.
+/// Returns the distance from `p` to a triangle.
 fn distance(t: &[DVec3; 3], p: DVec3) -> f64 {
     let [a, b, c] = *t;
     let n = (b - a).cross(c - a);
@@ -87,7 +87,7 @@ fn distance(t: &[DVec3; 3], p: DVec3) -> f64 {
     edge(a, b).min(edge(b, c)).min(edge(c, a))
 }
 
-/// How far `p` is from the nearest other piece, 0 inside one.
+/// Returns the distance of `p` from the nearest other piece, 0 inside one.
 fn gap(pieces: &[Piece], own: usize, p: DVec3, most: f64) -> f64 {
     let near = |piece: &Piece| (piece.low - p).max(p - piece.high).max_element() < most;
     let others = || pieces.iter().enumerate().filter(|(i, other)| *i != own && near(other)).map(|(_, o)| o);
@@ -97,7 +97,7 @@ fn gap(pieces: &[Piece], own: usize, p: DVec3, most: f64) -> f64 {
     others().flat_map(|other| &other.triangles).map(|t| distance(t, p)).fold(most, f64::min)
 }
 
-/// The feet of the branches of a tree: how far the nearest and the farthest of three corners of each is from all
+/// Feet of the branches of a tree: the distances of the nearest and the farthest of three corners of each from all
 /// other wood, metres.
 struct Feet {
     height: f64,
@@ -105,7 +105,7 @@ struct Feet {
 }
 
 impl Feet {
-    fn of(spec: &TreeSpec, seed: u64) -> Self {
+    fn grow(spec: &TreeSpec, seed: u64) -> Self {
         let made = make_tree(spec, Seed::new(seed), &TreeOptions::default(), &Run::plain()).expect("a tree");
         Self::on(&made.grown.plant, &made.model)
     }
@@ -114,7 +114,7 @@ impl Feet {
         let wood = model.parts.iter().filter(|p| ["branches", "twigs"].contains(&p.name.as_str()));
         let pieces: Vec<Piece> = wood.flat_map(|p| pieces(&p.mesh)).collect();
         let height = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
-        // What stands on the ground is borne by nothing.
+        // Stems on the ground have no bearer.
         let roots = |a: &&plant::Axis| a.bearer.is_none();
         let ground: Vec<DVec3> =
             plant.axes.iter().filter(roots).map(|a| plant.nodes.position[a.nodes.start as usize]).collect();
@@ -127,7 +127,7 @@ impl Feet {
         Self { height, gaps }
     }
 
-    /// Feet that lie outside all other wood as a whole; and in part, by more than a millimetre.
+    /// Counts feet that lie outside all other wood as a whole; and in part, by more than a millimetre.
     fn free(&self) -> [usize; 2] {
         let count = |is: fn(&[f64; 2]) -> bool| self.gaps.iter().filter(|g| is(g)).count();
         [count(|g| g[0] > 0.0), count(|g| g[0] == 0.0 && g[1] > 0.001)]
@@ -143,7 +143,7 @@ fn every_branch_grows_out_of_the_wood_that_bears_it() {
     let (mut branches, mut free, mut partly) = (0, 0, 0);
     let presets = sample(PRESETS, 1, SPECIES);
     for preset in &presets {
-        let feet = Feet::of(&preset.spec().expect("sound"), 1);
+        let feet = Feet::grow(&preset.spec().expect("sound"), 1);
         let [outside, in_part] = feet.free();
         (branches, free, partly) = (branches + feet.gaps.len(), free + outside, partly + in_part);
         let worst = feet.worst();
@@ -169,7 +169,7 @@ fn level_limbs_grow_out_of_their_bearers_whatever_the_seed() {
     let spec = cedar.spec().expect("sound");
     let (mut branches, mut free) = (0, 0);
     for seed in 1..=9 {
-        let feet = Feet::of(&spec, seed);
+        let feet = Feet::grow(&spec, seed);
         let [outside, in_part] = feet.free();
         (branches, free) = (branches + feet.gaps.len(), free + outside);
         assert!(feet.worst() < 0.02, "seed {seed}: a foot {} m from all other wood", feet.worst());
@@ -185,8 +185,8 @@ fn level_limbs_grow_out_of_their_bearers_whatever_the_seed() {
     );
 }
 
-/// A trunk with level limbs that turn by up to a right angle wherever they please, a few of their own diameters apart, with a
-/// twig at each joint. Limbs are a centimetre thick to `thickest`, metres.
+/// Makes a trunk with level limbs that turn at random by up to a right angle, at intervals of a few of their own
+/// diameters, with a twig at each joint. Limbs are a centimetre to `thickest` thick, metres.
 fn crooked(seed: u64, thickest: f64) -> plant::Plant {
     use plant::AxisKind::{Branch, Twig};
     let mut stream = Seed::new(seed).stream(base::Draw::Habit);
@@ -219,7 +219,7 @@ fn crooked(seed: u64, thickest: f64) -> plant::Plant {
     plant
 }
 
-/// Of sixty crooked trees the feet, those that lie outside all other wood, and how far the worst does.
+/// Returns, for sixty crooked trees, the number of feet, of those outside all other wood, and the worst distance.
 #[expect(clippy::print_stdout, reason = "figures for docs/trees.md")]
 fn of_crooked(thickest: f64) -> (usize, usize, f64) {
     let (mut branches, mut free, mut worst) = (0, 0, 0.0_f64);
@@ -242,7 +242,7 @@ fn of_crooked(thickest: f64) -> (usize, usize, f64) {
 
 #[test]
 fn twigs_at_the_turns_of_stout_limbs_are_borne_by_them() {
-    // As thick as they are long from turn to turn.
+    // Limbs as thick as the distance between two turns.
     let (branches, free, worst) = of_crooked(0.12);
     assert!(
         branches > 4000 && 1000 * free < branches,

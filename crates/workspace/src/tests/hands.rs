@@ -1,4 +1,4 @@
-//! Hands on plants: what is carried, what is kept of a gesture, and records of gestures.
+//! Shaping by hand: carried branches, kept gestures, and records of gestures.
 
 use burgeon::LiteMap;
 use burgeon::document::PlantNumbers;
@@ -10,7 +10,7 @@ use super::*;
 use crate::shown::Shown;
 use crate::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, ShapePointer, ShapeReach};
 
-/// Nodes of a branch and of all that it bears.
+/// Returns the nodes of a branch and of all that it bears.
 fn nodes_of(s: &Workspace, axis: u32) -> Vec<[f64; 3]> {
     let plant = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
     let borne = plant.borne_by(AxisId::new(axis as usize));
@@ -18,7 +18,7 @@ fn nodes_of(s: &Workspace, axis: u32) -> Vec<[f64; 3]> {
     rows.flat_map(|row| plant.axis_points(AxisId::new(row))).map(|p| p.to_array()).collect()
 }
 
-/// Those nodes where a pose carries them.
+/// Returns those nodes where a pose carries them.
 fn foreseen(s: &Workspace, axis: u32, pose: &Value) -> Vec<[f64; 3]> {
     let of = |key: &str| -> Vec<f64> {
         pose[key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
@@ -55,14 +55,14 @@ fn what_a_hand_carries_are_the_triangles_of_the_branch_and_of_what_it_bears() {
                 for t in rows.iter().flat_map(|r| &part.mesh.triangles[r.start as usize..r.end as usize]) {
                     let p = part.mesh.position(t[0]);
                     let near = |of: &[DVec3]| of.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
-                    // Leaves may hang beside other wood; what is wood does not.
+                    // Leaves may hang next to other wood; wood does not.
                     let more = if part.name == "leaves" { 0.2 } else { 0.02 };
                     let (to_own, to_any) = (near(&own), near(&all));
                     assert!(to_own < to_any + more * size, "{file} {axis} {}: {to_own} {to_any}", part.name);
                     carried += 1;
                 }
             }
-            // What stands on the ground with all that it bears is everything.
+            // A stem on the ground with all that it bears is the whole plant.
             if plant.axes.iter().filter(|a| a.bearer.is_none()).count() == 1 && axis == 0 {
                 let all: usize = rows.iter().flatten().map(|r| r.len()).sum();
                 assert_eq!(all, scene.model.triangle_count(), "{file}");
@@ -77,7 +77,7 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     let (mut s, (x, y)) = bush();
     let before = look(&mut s);
     let still = s.skeleton();
-    let looked = hand(&mut s, r#""pick""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    let looked = hand(&mut s, r#""pick""#, &format!(r#"{{"down":{}}}"#, pointer_at(x, y)));
     assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
     let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
     let lines = s.branch(axis);
@@ -86,16 +86,16 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     assert!(s.branch(0).len() >= lines.len());
 
     let rotate = r#""rotate""#;
-    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, pointer_at(x, y)));
     assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
-    let held = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.4)));
-    // What is carried is moved as it is seen, and nothing is made again.
+    let held = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, pointer_at(x, y + 0.4)));
+    // The carried branch is moved as it is shown, and nothing is made again.
     assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(false)), "{held}");
     assert_eq!(look(&mut s)["fresh"], false);
     assert_eq!(held["carried"]["mesh"], before["mesh"]);
     let foresaw = foreseen(&s, axis, &held["carried"]);
     assert_eq!(json(&s.state())["plants"][0]["edits"], Value::Array(vec![]));
-    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, at(x, y + 0.4)));
+    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, pointer_at(x, y + 0.4)));
     assert_eq!((&up["again"], &up["carried"]), (&Value::Bool(false), &Value::Null));
     assert_eq!(look(&mut s)["fresh"], false, "moved until it is asked for");
     s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
@@ -113,48 +113,49 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
     // Escape leaves nothing behind.
     gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
-    hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
-    hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.5)));
+    hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, pointer_at(x, y)));
+    hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, pointer_at(x, y + 0.5)));
     let let_go = hand(&mut s, rotate, r#""cancel""#);
     assert_eq!((&let_go["again"], &let_go["carried"]), (&Value::Bool(false), &Value::Null));
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
 }
 
-/// The edit of a gesture is asked for, and seen.
+/// The edit of a gesture is requested, and shown.
 const KEPT: &str = r#"{"did":"keep"},{"did":"seen"}"#;
 
-/// A record, done again without looking on.
+/// Replays a record without looking on.
 fn replayed(s: &mut Workspace, record: &GestureRecord) -> Result<crate::Replayed, WorkspaceError> {
     s.replay(record, &run(), &mut |_, _| ())
 }
 
-/// A branch is turned, one drawn in the air, one grown for six rounds with more vigour on the way, and one gesture has no end.
+/// Makes a record: a branch is turned, one drawn in the air, one grown for six rounds with more vigour on the way, and
+/// one gesture has no end.
 fn recorded(x: f64, y: f64) -> String {
     let step = |tool: &str, input: &str| {
         format!(r#"{{"did":{{"hand":{{"tool":{tool},"reach":{REACH},"input":{input}}}}}}}"#)
     };
     let tip = |x: f64, y: f64, z: f64| {
-        at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
+        pointer_at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
     };
     let grow =
         |vigour: f64| format!(r#"{{"vigour":{vigour},"apical":0.5,"angle_deg":50,"lift":0.1,"apart":1}}"#);
     let tool = format!(r#"{{"grow":{}}}"#, grow(1.5));
     let draw = r#"{"sketch":{"twigs":1,"tilt_deg":0}}"#;
     let mut steps = vec![
-        step(r#""rotate""#, &format!(r#"{{"down":{}}}"#, at(x, y))),
+        step(r#""rotate""#, &format!(r#"{{"down":{}}}"#, pointer_at(x, y))),
         step(r#""rotate""#, r#"{"twist":30}"#),
-        step(r#""rotate""#, &format!(r#"{{"up":{}}}"#, at(x, y))),
+        step(r#""rotate""#, &format!(r#"{{"up":{}}}"#, pointer_at(x, y))),
         KEPT.to_owned(),
         step(draw, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))),
         step(draw, &format!(r#"{{"move":[{},{}]}}"#, tip(0.3, 1.5, 0.2), tip(0.6, 1.9, 0.3))),
         step(draw, &format!(r#"{{"up":{}}}"#, tip(0.9, 2.1, 0.2))),
         KEPT.to_owned(),
-        step(&tool, &format!(r#"{{"down":{}}}"#, at(0.0, 1.0))),
+        step(&tool, &format!(r#"{{"down":{}}}"#, pointer_at(0.0, 1.0))),
     ];
     steps.extend((0..3).map(|_| step(&tool, r#""round""#)));
     steps.push(step(&tool, &format!(r#"{{"grow":{}}}"#, grow(2.5))));
     steps.extend((0..3).map(|_| step(&tool, r#""round""#)));
-    steps.push(step(&tool, &format!(r#"{{"up":{}}}"#, at(0.0, 1.0))));
+    steps.push(step(&tool, &format!(r#"{{"up":{}}}"#, pointer_at(0.0, 1.0))));
     steps.push(KEPT.to_owned());
     steps.push(step(draw, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))));
     format!(r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{}]}}"#, steps.join(","))
@@ -175,7 +176,7 @@ fn a_record_of_gestures_makes_the_same_plant_again() {
     let came = replayed(&mut second, &GestureRecord::read(again.as_bytes()).unwrap()).unwrap();
     assert_eq!((came.edits, came.digest.as_deref()), (3, done["digest"].as_str()));
     assert_eq!(look(&mut second)["item"]["digest"], done["digest"]);
-    // Each is a step of undo, and all undone is the first plant.
+    // Each is a step of undo, and after undoing all the plant is the first one.
     for _ in 0..3 {
         assert!(second.undo().is_some());
     }
@@ -187,7 +188,7 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
     let (s, (x, y)) = bush();
     drop(s);
     let text = recorded(x, y);
-    let code = |bytes: &[u8]| Refusal::of(&GestureRecord::read(bytes).unwrap_err()).code;
+    let code = |bytes: &[u8]| Refusal::from_error(&GestureRecord::read(bytes).unwrap_err()).code;
     for share in 1..40 {
         assert_eq!(code(&text.as_bytes()[..text.len() * share / 40]), "record");
     }
@@ -195,13 +196,13 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
     assert_eq!(code(text.replace("\"twist\":30", "\"twist\":1e999").as_bytes()), "record");
     assert_eq!(code(text.replace("\"reach\"", "\"reach\":{},\"more\"").as_bytes()), "record");
     assert_eq!(code(&vec![b'['; 1 << 16]), "record");
-    let far = at(1.0, 1.0);
+    let far = pointer_at(1.0, 1.0);
     let many = vec![far.as_str(); 20_001].join(",");
     let long = format!(
         r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{{"did":{{"hand":{{"tool":"rotate","reach":{REACH},"input":{{"move":[{many}]}}}}}}}}]}}"#
     );
     assert_eq!(code(long.as_bytes()), "record-long");
-    // Steps in any order, with any numbers, are no fault of the tools.
+    // Steps in any order, with any numbers, cause no fault of the tools.
     let (mut s, _) = bush();
     let mut record = GestureRecord::read(text.as_bytes()).unwrap();
     record.steps.reverse();
@@ -221,9 +222,10 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
         replayed(&mut s, record).unwrap();
         assert!(look(&mut s)["error"].is_null());
     }
-    // An edit that no gesture made, a project that is none, a plant that is not there.
-    let refused =
-        |record: GestureRecord| Refusal::of(&replayed(&mut Workspace::default(), &record).unwrap_err()).code;
+    // An edit that no gesture made, an invalid project, a plant that does not exist.
+    let refused = |record: GestureRecord| {
+        Refusal::from_error(&replayed(&mut Workspace::default(), &record).unwrap_err()).code
+    };
     let keeps = vec![GestureStep { ms: 0, did: GestureDeed::Keep }];
     assert_eq!(refused(GestureRecord { steps: keeps, ..GestureRecord::default() }), "record-keeps");
     let project = |text: &str| GestureRecord { project: Some(text.into()), ..GestureRecord::default() };
@@ -233,7 +235,7 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
     assert_eq!(refused(GestureRecord { plant, ..GestureRecord::default() }), "plant-gone");
 }
 
-/// All that can be seen of the plants: number and digest of each.
+/// Returns number and digest of each plant.
 fn digests(s: &mut Workspace) -> Vec<(u64, String)> {
     let view = json(&s.evaluate(&run()).unwrap());
     let digest = |p: &Value| (p["id"].as_u64().unwrap(), p["item"]["digest"].as_str().unwrap().to_owned());
@@ -255,11 +257,11 @@ fn a_record_means_the_plants_that_it_names_in_a_scene_of_several() {
     let project = BASE64.encode(&s.save().unwrap());
     let turn =
         |input: &str| format!(r#"{{"did":{{"hand":{{"tool":"rotate","reach":{REACH},"input":{input}}}}}}}"#);
-    // A branch of the first is turned, the second gets another seed, a copy of it comes in and goes by its own number.
+    // A branch of the first is turned, the second gets another seed, and a copy of it comes in and has its own number.
     let steps = [
-        turn(&format!(r#"{{"down":{}}}"#, at(x, y))),
+        turn(&format!(r#"{{"down":{}}}"#, pointer_at(x, y))),
         turn(r#"{"twist":30}"#),
-        turn(&format!(r#"{{"up":{}}}"#, at(x, y))),
+        turn(&format!(r#"{{"up":{}}}"#, pointer_at(x, y))),
         KEPT.to_owned(),
         r#"{"did":{"command":{"plant":[3,{"set-seed":"5"}]}}}"#.to_owned(),
         r#"{"did":{"command":{"scene":{"duplicate":[3,[1.5,0,0]]}}}}"#.to_owned(),
@@ -277,12 +279,13 @@ fn a_record_means_the_plants_that_it_names_in_a_scene_of_several() {
     let mut again = Workspace::default();
     assert_eq!(replayed(&mut again, &record).unwrap(), came);
     assert_eq!(digests(&mut again), done);
-    // Without its numbers it is not known which plants are meant.
+    // Without its numbers it is unknown which plants are meant.
     let lost = GestureRecord { numbers: None, ..record.clone() };
-    let code =
-        |record: &GestureRecord| Refusal::of(&replayed(&mut Workspace::default(), record).unwrap_err()).code;
+    let code = |record: &GestureRecord| {
+        Refusal::from_error(&replayed(&mut Workspace::default(), record).unwrap_err()).code
+    };
     assert_eq!(code(&lost), "plant-gone");
-    // Numbers that are too few, taken twice, or not given yet.
+    // Numbers that are too few, used twice, or not assigned yet.
     for (plants, next) in [(vec![2], 4), (vec![2, 2], 4), (vec![2, 9], 4), (vec![2, 3, 4], 9)] {
         let plants = plants.into_iter().map(PlantId).collect();
         let numbers = Some(PlantNumbers { plants, next });
@@ -292,7 +295,7 @@ fn a_record_means_the_plants_that_it_names_in_a_scene_of_several() {
 
 #[test]
 fn a_branch_that_is_pulled_off_says_on_what_it_would_be_dropped() {
-    /// A hand that turned by about 17 degrees.
+    /// Orientation of a hand that turned by about 17 degrees.
     const SPUN: DQuat = DQuat::from_xyzw(0.0, 0.15, 0.0, 0.99);
     let (mut s, _) = bush();
     let before = look(&mut s)["item"]["digest"].clone();
@@ -303,7 +306,8 @@ fn a_branch_that_is_pulled_off_says_on_what_it_would_be_dropped() {
     let held = |p: DVec3, turn: DQuat| {
         let [x, y, z] = p.to_array();
         let hand = json(&turn.to_array());
-        at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}],"hand":{hand}"#))
+        pointer_at(x, y)
+            .replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}],"hand":{hand}"#))
     };
     let rotate = r#""rotate""#;
     let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, held(tip, DQuat::IDENTITY)));
@@ -319,7 +323,7 @@ fn a_branch_that_is_pulled_off_says_on_what_it_would_be_dropped() {
     assert_eq!((&up["commit"]["op"], up["commit"]["turn"].is_object()), (&"move".into(), true), "{up}");
     s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
     look(&mut s);
-    // Rows may be others now; its key stays.
+    // Rows may have changed; its key stays.
     let moved = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
     let key = plant.axis(AxisId::new(axis as usize)).key;
     let row = moved.axes.iter().position(|a| a.key == key).unwrap();
@@ -335,12 +339,12 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
     let (mut first, (x, y)) = bush();
     let plain = look(&mut first)["item"]["digest"].clone();
     // Between the hands of somebody who looks along -z.
-    let placed = hand(&mut first, r#""rotate""#, &format!(r#"{{"mirror":{}}}"#, at(x, y)));
+    let placed = hand(&mut first, r#""rotate""#, &format!(r#"{{"mirror":{}}}"#, pointer_at(x, y)));
     let mirror = placed["mirror"].to_string();
     assert_eq!(placed["mirror"]["normal"], serde_json::json!([1.0, 0.0, 0.0]), "{placed}");
     let both = REACH.replace('}', &format!(r#","mirror":{mirror}}}"#));
     let tip = |x: f64, y: f64, z: f64| {
-        at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
+        pointer_at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
     };
     let step = |tool: &str, reach: &str, input: &str| {
         format!(r#"{{"did":{{"hand":{{"tool":{tool},"reach":{reach},"input":{input}}}}}}}"#)
@@ -348,7 +352,7 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
     let draw = r#"{"sketch":{"twigs":1,"tilt_deg":0}}"#;
     let copy = r#""copy""#;
     let steps = [
-        step(copy, REACH, &format!(r#"{{"down":{}}}"#, at(x, y))),
+        step(copy, REACH, &format!(r#"{{"down":{}}}"#, pointer_at(x, y))),
         step(copy, REACH, &format!(r#"{{"move":[{}]}}"#, tip(0.1, 0.9, 0.1))),
         step(copy, REACH, &format!(r#"{{"up":{}}}"#, tip(0.0, 0.8, 0.0))),
         KEPT.to_owned(),
@@ -371,7 +375,7 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
         assert!(second.undo().is_some());
     }
     assert_eq!(look(&mut second)["item"]["digest"], plain);
-    // A mirror that is none is refused, and changes nothing.
+    // An invalid mirror is refused, and changes nothing.
     let flat = GestureRecord {
         steps: record.steps[5..]
             .iter()
@@ -394,7 +398,7 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
 fn what_grows_in_the_hand_says_how_old_and_how_dense_it_is() {
     let (mut s, _) = bush();
     let tool = r#"{"grow":{"vigour":2,"apical":0.54,"angle_deg":55,"lift":0.12,"apart":1}}"#;
-    let first = hand(&mut s, tool, &format!(r#"{{"down":{}}}"#, at(0.0, 1.0)));
+    let first = hand(&mut s, tool, &format!(r#"{{"down":{}}}"#, pointer_at(0.0, 1.0)));
     assert_eq!((&first["grown"]["rounds"], &first["grown"]["branches"]), (&1.into(), &0.into()));
     assert_eq!(first["grown"]["per_metre"], Value::Null);
     let mut told = Vec::new();
@@ -409,7 +413,7 @@ fn what_grows_in_the_hand_says_how_old_and_how_dense_it_is() {
     assert!(told.windows(2).all(|w| w[1] >= w[0]) && told[9] > 5, "{told:?}");
     let density = last["per_metre"].as_f64().unwrap();
     assert!((0.2..50.0).contains(&density), "{density}");
-    let up = hand(&mut s, tool, &format!(r#"{{"up":{}}}"#, at(0.0, 1.0)));
+    let up = hand(&mut s, tool, &format!(r#"{{"up":{}}}"#, pointer_at(0.0, 1.0)));
     assert_eq!(up["grown"], Value::Null);
     s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
     let added = look(&mut s)["item"]["edits"][0]["changed"]["added"].as_u64().unwrap();
@@ -425,7 +429,7 @@ fn what_is_shown_stays_within_a_number_of_triangles_and_is_carried_as_it_is_show
         (0..parts).map(|part| s.indices(PlantId(1), part).len() / 3).sum()
     };
     let all = shown(&s, &whole);
-    // Made before it is wished for, it is not seen, and is not made again when it is.
+    // A level made in advance is not shown, and is not made again when it is needed.
     s.ready_levels(all as u64 / 2, &run());
     let still = look(&mut s);
     assert_eq!(shown(&s, &still), all);
@@ -439,12 +443,12 @@ fn what_is_shown_stays_within_a_number_of_triangles_and_is_carried_as_it_is_show
     assert!(fewer["fresh"] == true && fewer["mesh"] != whole["mesh"], "{} {}", fewer["fresh"], fewer["mesh"]);
     let now = shown(&s, &fewer);
     assert!(now <= all / 2 && now > all / 40, "{now} of {all}");
-    // The plant is the same one; what is shown again is not sent again.
+    // The plant is the same one; meshes shown again are not sent again.
     assert_eq!(fewer["item"], whole["item"]);
     let again = look(&mut s);
     assert_eq!((&again["fresh"], &again["mesh"]), (&Value::Bool(false), &fewer["mesh"]));
-    // What the hand carries are triangles of what is shown.
-    hand(&mut s, r#""rotate""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    // The hand carries triangles of the shown meshes.
+    hand(&mut s, r#""rotate""#, &format!(r#"{{"down":{}}}"#, pointer_at(x, y)));
     let answer = hand(&mut s, r#""rotate""#, r#"{"twist":30}"#);
     assert_eq!(answer["carried"]["mesh"], fewer["mesh"], "{answer}");
     let rows: Vec<[u32; 3]> = s.held_rows().as_chunks().0.to_vec();
@@ -452,7 +456,7 @@ fn what_is_shown_stays_within_a_number_of_triangles_and_is_carried_as_it_is_show
     for [part, from, to] in rows {
         assert!(from < to && to as usize <= s.indices(PlantId(1), part as usize).len() / 3);
     }
-    // Seen where the hand is: as many triangles, others in their places.
+    // Shown in the pose of the hand: as many triangles, in other places.
     let carried = s.seen().unwrap();
     assert_eq!(carried.triangle_count(), now);
     hand(&mut s, r#""rotate""#, r#""cancel""#);

@@ -41,7 +41,7 @@ fn copies_variants_levels_and_links() {
     assert!(one.starts_with(b"glTF") && holds(&one, b"MSFT_lod") && holds(&one, b"hemi-octahedral"));
     let far = s.exported(&of(false, false, true));
     assert!(far.starts_with(b"PK") && holds(&far, b"plant_LOD2.glb"), "two levels and the impostor");
-    // Joints want files of their own.
+    // Joints need files of their own.
     assert!(s.exported(&of(true, true, false)).starts_with(b"PK"), "two files");
     let swaying = s.exported(&ExportRequest { levels: 1, ..of(false, true, false) });
     assert!(swaying.starts_with(b"glTF") && holds(&swaying, b"inverseBindMatrices"), "joints");
@@ -79,7 +79,7 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     let mut other = Workspace::default();
     other.open("three.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(scene(&mut other), scene(&mut s));
-    // An obstacle is grown around; a spec that is none is refused.
+    // A tree grows around an obstacle; an invalid spec is refused.
     let ids: Vec<PlantId> = s.document().plants().iter().map(|p| p.id()).collect();
     assert_eq!(ids.len(), made.len());
     s.select(ids[0]).unwrap();
@@ -122,7 +122,7 @@ fn three_hundred_trees_one_after_the_other_do_not_grow_without_bound() {
     for k in 0..300 {
         s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
         let id = s.current().unwrap();
-        s.run(PlantCommand::SetSeed(Seed::new(k + 7)).of(id)).unwrap();
+        s.run(PlantCommand::SetSeed(Seed::new(k + 7)).for_plant(id)).unwrap();
         let made = look(&mut s);
         assert!(made["item"]["digest"].is_string(), "{made}");
         if k == 0 {
@@ -143,7 +143,7 @@ fn three_hundred_trees_one_after_the_other_do_not_grow_without_bound() {
     let again = look(&mut s);
     assert_eq!(again["item"]["digest"], first["item"]["digest"]);
     assert_ne!(again["stages"], serde_json::json!([]));
-    // What is shown stays, whatever the limit.
+    // Visible plants stay, whatever the limit.
     s.keep_at_most(0);
     assert!(look(&mut s)["parts"].as_array().is_some_and(|p| !p.is_empty()));
     assert_eq!(s.scene.kept().count(), 1);
@@ -177,11 +177,11 @@ fn plants_that_are_added_again_stand_where_they_stood() {
 fn a_scene_that_is_full_says_so_and_goes_on() {
     let lily = Action::Add { name: "lily".into(), maker: NewMaker::Flower("lily".into()) };
     let mut s = Workspace::default();
-    // Plants that are alike would share their memory.
+    // Identical plants would share their memory.
     let other = |s: &mut Workspace, seed| {
         s.act(&lily).unwrap();
         let id = s.current().unwrap();
-        s.run(PlantCommand::SetSeed(Seed::new(seed)).of(id)).unwrap();
+        s.run(PlantCommand::SetSeed(Seed::new(seed)).for_plant(id)).unwrap();
     };
     other(&mut s, 2);
     s.evaluate(&run()).unwrap();
@@ -192,12 +192,12 @@ fn a_scene_that_is_full_says_so_and_goes_on() {
     let view = s.evaluate(&run()).unwrap();
     assert_eq!(view.plants[2].error.as_ref().map(|e| e.code.as_str()), Some("scene-full"));
     assert!(view.plants[2].parts.is_empty());
-    // What is there may change, and room that is made is used.
+    // An existing plant may change, and freed room is used.
     let first = s.document().plants()[0].id();
-    s.run(PlantCommand::SetSeed(Seed::new(7)).of(first)).unwrap();
+    s.run(PlantCommand::SetSeed(Seed::new(7)).for_plant(first)).unwrap();
     assert!(s.evaluate(&run()).unwrap().plants[0].error.is_none());
     s.keep_at_most(0);
-    s.run(PlantCommand::Hide(true).of(first)).unwrap();
+    s.run(PlantCommand::Hide(true).for_plant(first)).unwrap();
     s.evaluate(&run()).unwrap();
     let view = s.evaluate(&run()).unwrap();
     assert!(view.plants[2].error.is_none() && !view.plants[2].parts.is_empty());
@@ -207,19 +207,19 @@ fn a_scene_that_is_full_says_so_and_goes_on() {
 fn a_plant_whose_place_is_locked_stays_where_it_is() {
     let mut s = flower();
     let id = s.current().unwrap();
-    s.run(PlantCommand::Fix(true).of(id)).unwrap();
+    s.run(PlantCommand::Fix(true).for_plant(id)).unwrap();
     let there = Placement { position: DVec3::X, ..Placement::default() };
-    let why = s.run(PlantCommand::Place(there).of(id)).unwrap_err();
-    assert_eq!(Refusal::of(&why).code, "place-locked");
+    let why = s.run(PlantCommand::Place(there).for_plant(id)).unwrap_err();
+    assert_eq!(Refusal::from_error(&why).code, "place-locked");
     assert_eq!(s.document().plants()[0].settings().placement, Placement::default());
-    // It is kept with the project; a copy is free to go.
+    // It is kept with the project; a copy may move.
     s.run(SceneCommand::Duplicate(id, DVec3::Z)).unwrap();
     let mut other = Workspace::default();
     other.open("two.burgeon", &s.save().unwrap(), 0, true).unwrap();
     let fixed: Vec<bool> = other.document().plants().iter().map(|p| p.settings().fixed).collect();
     assert_eq!(fixed, [true, false]);
-    s.run(PlantCommand::Fix(false).of(id)).unwrap();
-    s.run(PlantCommand::Place(there).of(id)).unwrap();
+    s.run(PlantCommand::Fix(false).for_plant(id)).unwrap();
+    s.run(PlantCommand::Place(there).for_plant(id)).unwrap();
     assert_eq!(s.undo(), Some("place"));
     assert_eq!(s.undo(), Some("fix"));
 }
@@ -234,7 +234,7 @@ fn an_obstacle_has_a_name_by_which_messages_call_it() {
     s.ask(r#"{"tree":[1,{"rename-obstacle":[0,"Grandmother's wall"]}]}"#).unwrap();
     assert_eq!(json(&s.state())["plants"][0]["tree"]["obstacles"][0]["name"], "Grandmother's wall");
     assert!(s.ask(r#"{"tree":[1,{"rename-obstacle":[7,"nothing"]}]}"#).is_err());
-    // An open mesh: what is said of it follows its name.
+    // An open mesh: the warning begins with its name.
     let open = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                 element face 1\nproperty list uchar int vertex_indices\nend_header\n5 0 0\n6 0 0\n5 1 0\n3 0 1 2\n";
     s.add_obstacle("sheet.ply", open.as_bytes()).unwrap();
@@ -290,9 +290,9 @@ fn copies_share_meshes_in_the_view_and_in_binary_gltf() {
     other.open("four.glb", &file, 0, false).unwrap();
     let seen = look(&mut other);
     assert!((seen["max"][0].as_f64().unwrap() - seen["min"][0].as_f64().unwrap()) > 3.0, "they stand apart");
-    // Another seed is another plant; the others stay as they are.
+    // Another seed gives another plant; the others stay as they are.
     let last = s.current().unwrap();
-    s.run(PlantCommand::SetSeed(Seed::new(5)).of(last)).unwrap();
+    s.run(PlantCommand::SetSeed(Seed::new(5)).for_plant(last)).unwrap();
     let three = meshes(&mut s);
     assert!(three[..3].iter().all(|m| *m == four[0]) && three[3] != four[0], "{three:?}");
 }

@@ -12,7 +12,7 @@ use burgeon::{Run, StrokeReport};
 use workspace::Workspace;
 
 const GALLERY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/gallery");
-/// A page shows what is less sure as doubtful.
+/// Confidence below which a page shows a class as doubtful.
 const DOUBTFUL: f64 = 0.3;
 
 type Shown = Vec<(StrokeId, Option<StrokeClass>)>;
@@ -46,14 +46,14 @@ fn is_clear(s: &StrokeReport) -> bool {
     s.confidence >= DOUBTFUL
 }
 
-/// What a page says that strokes were clearly shown as.
+/// Returns the classes that a page reports as clearly shown.
 fn shown(seen: &[StrokeReport]) -> Shown {
     let class = |s: &StrokeReport| StrokeClass::ALL.into_iter().find(|c| c.word() == s.class);
     seen.iter().map(|s| (StrokeId(s.index), class(s).filter(|_| is_clear(s)))).collect()
 }
 
-/// Draws as with a page that keeps what it shows, or not: the requests, how often a stroke that was there became what it is
-/// not when the drawing is done, and how many were kept as shown.
+/// Draws as with a page that keeps the shown classes, or not. Returns the requests, how often an existing stroke took a
+/// class other than its final one, and how many were kept as shown.
 fn draw(drawing: &Drawing, keeps: bool) -> (Workspace, Vec<(Stroke, Shown)>, [usize; 2]) {
     let (mut workspace, mut asked) = (Workspace::default(), Vec::new());
     let (mut before, mut became, mut kept) = (BTreeMap::new(), Vec::new(), 0);
@@ -73,7 +73,7 @@ fn draw(drawing: &Drawing, keeps: bool) -> (Workspace, Vec<(Stroke, Shown)>, [us
     (workspace, asked, [away, kept])
 }
 
-/// What a stroke was shown as stays without need for another, in the document, in its file and when it is done again.
+/// The class that a stroke was shown as stays, if nothing requires another, in the document, in its file and on redo.
 #[test]
 fn what_was_shown_stays_while_a_drawing_grows() {
     let (mut afresh, mut steady, mut kept) = (0, 0, 0);
@@ -109,7 +109,7 @@ fn what_was_shown_stays_while_a_drawing_grows() {
     assert!(kept > 0 && 4 * steady < 3 * afresh, "{afresh} changes afresh, {steady} with what was shown");
 }
 
-/// Undo takes back what was kept with a stroke, and a class that is left to the classifier again is read afresh.
+/// Undo takes back the kept classes of a stroke, and a class that is left to the classifier again is read afresh.
 #[test]
 fn what_was_shown_is_forgotten_when_it_is_asked() {
     let drawing = gallery().into_iter().find(|d| d.strokes.len() > 5).unwrap();
@@ -123,11 +123,11 @@ fn what_was_shown_is_forgotten_when_it_is_asked() {
     assert_eq!(shown(&workspace), all);
     let plant = workspace.current().unwrap();
     let ids: Vec<StrokeId> = workspace.document().plants()[0].strokes().iter().map(|s| s.id).collect();
-    workspace.run(burgeon::document::SketchCommand::SetClass(ids, None).of(plant)).unwrap();
+    workspace.run(burgeon::document::SketchCommand::SetClass(ids, None).for_plant(plant)).unwrap();
     assert_eq!(shown(&workspace), 0);
 }
 
-/// Where a person adds lines to a tree that was opened: the ends of each, in shares of the drawing's box (y up).
+/// Lines that a person adds to a tree that was opened: the ends of each, as shares of the drawing's box (y up).
 const LINES: [(&str, [[f64; 4]; 3]); 5] = [
     ("twigs in the crown", [[0.5, 0.7, 0.35, 0.85], [0.5, 0.6, 0.7, 0.8], [0.45, 0.55, 0.25, 0.6]]),
     ("twigs at the trunk", [[0.5, 0.3, 0.3, 0.4], [0.5, 0.35, 0.7, 0.45], [0.5, 0.2, 0.6, 0.28]]),
@@ -135,10 +135,10 @@ const LINES: [(&str, [[f64; 4]; 3]); 5] = [
     ("grass beside it", [[0.1, 0.0, 0.08, 0.1], [0.2, 0.0, 0.22, 0.12], [0.9, 0.0, 0.92, 0.1]]),
     ("long lines across", [[0.05, 0.5, 0.95, 0.55], [0.1, 0.1, 0.9, 0.9], [0.5, 0.02, 0.5, 0.98]]),
 ];
-/// Points of each line.
+/// Number of points of each line.
 const POINTS: usize = 24;
 
-/// A line with the slight arc of a hand.
+/// Makes a line with the slight arc of a hand.
 fn line(drawing: &Drawing, [x0, y0, x1, y1]: [f64; 4]) -> Stroke {
     let points = || drawing.strokes.iter().flat_map(|s| s.samples.iter().map(|p| p.at));
     let low = points().fold(DVec2::INFINITY, DVec2::min);
@@ -152,11 +152,11 @@ fn line(drawing: &Drawing, [x0, y0, x1, y1]: [f64; 4]) -> Stroke {
     Stroke { samples: (0..POINTS).map(at).collect(), ..Stroke::default() }
 }
 
-/// Trees that once became a petal or a leaf by a line or three more: each stroke stays what it was clearly shown as, and
-/// none becomes a blade.
+/// Tests trees that once became a petal or a leaf when one to three lines were added: each stroke keeps the class that
+/// it was clearly shown as, and none becomes a blade.
 #[test]
 fn lines_more_make_nothing_else_of_a_tree() {
-    // A line from edge to edge of the poplar's crown makes a leaf and its midrib of it: its outline is one.
+    // A line from edge to edge of the poplar's crown turns it into a leaf and its midrib: its outline is one.
     for (name, sets) in [("apple-tree", 5), ("oak", 5), ("pine", 5), ("poplar", 4)] {
         let bytes = fs::read(Path::new(GALLERY).join(format!("{name}.svg"))).expect("a drawing of our own");
         let drawing = formats::read_drawings(bytes.as_slice(), DrawingFormat::Svg, name);

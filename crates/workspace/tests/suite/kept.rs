@@ -1,8 +1,9 @@
-//! Every input of `fuzz/kept` and every large one that a function makes, through its fuzz target, on any compiler.
+//! Every input of `fuzz/kept` and every large generated one, through its fuzz target, on any compiler.
 //!
 //! `BURGEON_KEPT_MUTANTS=200` tries as many mutants of each kept input as well: fuzzing for those without a nightly
-//! compiler. A failure names target, input and mutant, and comes back. `BURGEON_KEPT_TARGET=reading` takes the targets of that
-//! name only, `BURGEON_KEPT_FIRST=200` other mutants, `BURGEON_KEPT_SAYS=1` tells each input before it is run.
+//! compiler. A failure names target, input and mutant, and is reproducible. `BURGEON_KEPT_TARGET=reading` takes the
+//! targets of that name only, `BURGEON_KEPT_FIRST=200` other mutants, `BURGEON_KEPT_SAYS=1` prints each input before it
+//! is run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -22,12 +23,12 @@ use targets::TARGETS;
 
 const FUZZ: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz");
 
-/// What one input may take in a development build on a busy machine: the slowest takes a tenth of it.
+/// Time limit of one input in a development build on a busy machine: the slowest takes a tenth of it.
 const ONE_INPUT: Duration = Duration::from_secs(60);
-/// What one mutant may take.
+/// Time limit of one mutant.
 const ONE_MUTANT: Duration = Duration::from_secs(25);
 
-/// The kept inputs of each target, by their names, in their order.
+/// Returns the kept inputs of each target, by their names, in their order.
 fn kept() -> BTreeMap<String, Vec<(String, Vec<u8>)>> {
     let name = |path: &Path| path.file_name().expect("a name").to_string_lossy().into_owned();
     let list = |folder: &Path| {
@@ -41,7 +42,7 @@ fn kept() -> BTreeMap<String, Vec<(String, Vec<u8>)>> {
     folders.iter().map(|f| (name(f), list(f).iter().map(|file| read(file)).collect())).collect()
 }
 
-/// Every target is a program that runs each night, has its function, and has kept inputs that are small.
+/// Checks that every target is a program that runs each night, has its function, and has small kept inputs.
 #[test]
 fn every_target_has_a_function_and_kept_inputs() {
     let manifest = fs::read_to_string(Path::new(FUZZ).join("Cargo.toml")).expect("a file of the repository");
@@ -66,7 +67,7 @@ fn every_target_has_a_function_and_kept_inputs() {
     }
 }
 
-/// Runs a target; whether it took what it was given, and how long that was.
+/// Runs a target and returns whether it accepted its input, and how long that took.
 fn run_timed(target: &str, input: &str, bytes: &[u8], most: Duration) -> (bool, Duration) {
     if std::env::var_os(targets::SAYS).is_some() {
         eprintln!("{target}/{input}\n{}", bytes[..bytes.len().min(16 << 10)].escape_ascii());
@@ -78,7 +79,7 @@ fn run_timed(target: &str, input: &str, bytes: &[u8], most: Duration) -> (bool, 
     (ended.unwrap_or_else(|_| panic!("{target}/{input}: see above")), took)
 }
 
-/// Names that begin with `bad-` are refused, all others taken: so the targets do get as far as they should.
+/// Names that begin with `bad-` are refused, all others accepted: so the targets do get as far as they should.
 #[test]
 fn every_kept_input_is_refused_or_sound_as_its_name_says() {
     let (mut count, mut slowest, mut wrong) = (0, (Duration::ZERO, String::new()), Vec::new());
@@ -96,8 +97,8 @@ fn every_kept_input_is_refused_or_sound_as_its_name_says() {
     println!("{count} inputs; the slowest: {} in {:?}", slowest.1, slowest.0);
 }
 
-/// What a model names elsewhere is asked of the shell by the name in the file, and never opened by a reader; a `<use>` of
-/// itself ends, and the rest of the drawing is read.
+/// Tests that a reader asks the shell for files that a model names, by the name in the file, and never opens them; a
+/// `<use>` of itself ends, and the rest of the drawing is read.
 #[test]
 fn what_files_refer_to_is_not_followed() {
     use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
@@ -115,7 +116,7 @@ fn what_files_refer_to_is_not_followed() {
     assert_eq!(read.expect("the rest of it").drawing.strokes.len(), 1);
 }
 
-/// A drawing of a pile as a text of the target `reading`.
+/// Returns a drawing of a pile as a text of the target `reading`.
 fn strokes(pile: Pile, count: u32) -> Vec<u8> {
     let mut text = String::new();
     for stroke in &pile.drawing(count).strokes {
@@ -127,7 +128,7 @@ fn strokes(pile: Pile, count: u32) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A growth table of so many rows: as many plants as give each 25 days.
+/// Returns a growth table of this many rows: as many plants as give each 25 days.
 fn growth_table(rows: u32) -> Vec<u8> {
     let mut text = String::from("# unit: mm\nday,size,plant\n");
     for row in 0..rows {
@@ -138,20 +139,20 @@ fn growth_table(rows: u32) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A triangle after so many lines that name the same library of materials.
+/// Returns a triangle after this many lines that name the same library of materials.
 fn libraries(lines: usize) -> Vec<u8> {
     let lines = "mtllib a.mtl\n".repeat(lines);
     let shape = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3";
     format!("a.obj\n{lines}{shape}\n=== a.mtl\nnewmtl red\nKd 1 0 0\n").into_bytes()
 }
 
-/// Inputs that are large, and so made here: the rest of what hostile files did.
+/// Inputs that are large, and therefore generated: the other deeds of hostile files.
 #[test]
 fn large_hostile_inputs_are_refused_or_sound() {
     let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\">{}", "<g>".repeat(100_000)).into_bytes();
     let spec = format!("tree\nname = {}", "[".repeat(100_000)).into_bytes();
     let mut inputs: Vec<(&str, &str, bool, Vec<u8>)> = vec![
-        // The stem onto itself, until the plant is too large.
+        // The stem copied onto itself, until the plant is too large.
         ("copies", "copies of copies of copies", false, [0, 0, 128].repeat(30)),
         ("law_after", "a growth table of 3,000 rows", true, growth_table(3_000)),
         ("marks", "a growth table of 200,000 rows", true, growth_table(200_000)),
@@ -168,7 +169,7 @@ fn large_hostile_inputs_are_refused_or_sound() {
     }
 }
 
-/// Words that break readers: numbers beyond everything, openings without closings, separators.
+/// Words that break readers: huge numbers, openings without closings, separators.
 const NASTY: [&[u8]; 24] = [
     b"NaN",
     b"1e999",
@@ -196,7 +197,7 @@ const NASTY: [&[u8]; 24] = [
     b"../",
 ];
 
-/// A kept input, changed in one to six places.
+/// Changes a kept input in one to six places.
 fn mutant(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=random.below(6) {
@@ -218,7 +219,7 @@ fn mutant(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
             4 => drop(bytes.splice(at..at, word.iter().copied())),
             5 => drop(bytes.splice(at..end, word.iter().copied())),
             _ => {
-                // Another number: counts, places and sizes are where readers believe too much.
+                // Another number: readers rely too much on counts, places and sizes.
                 if let Some(digit) = bytes[at..].iter().position(u8::is_ascii_digit) {
                     bytes[at + digit] = b'0' + u8::try_from(random.below(10)).unwrap_or_default();
                     if random.below(2) == 0 {
@@ -241,7 +242,7 @@ fn mutants_of_kept_inputs_are_refused_or_sound() {
         let (mut count, mut slowest) = (0, Duration::ZERO);
         let from = Instant::now();
         for (input, bytes) in &inputs {
-            // By the name, so that a mutant stays what it is when others are kept as well.
+            // Seeded by the name, so that a mutant stays the same when other inputs are added.
             let seed = input.bytes().fold(Seed::new(1), |seed, byte| seed.child(u64::from(byte)));
             for k in first..first + wanted {
                 let mut random = seed.child(k).stream(Draw::Test);

@@ -1,11 +1,11 @@
-//! What is left for later is what it would have been at once.
+//! Results left for later equal those computed at once.
 
 use burgeon::glam::DVec2;
 use burgeon::ink::Drawing;
 use burgeon::{ItemReport, Run};
 use workspace::Workspace;
 
-/// Lines side by side, as many as are asked for.
+/// Draws this many parallel lines.
 fn drawn(count: u32, later: bool) -> (Workspace, ItemReport) {
     let mut workspace = Workspace::default();
     workspace.measure_later(later);

@@ -1,4 +1,5 @@
-//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-workspace --test suite MODULE::`.
+//! Integration tests, linked as one program. To run one module: `cargo test -p burgeon-workspace --test suite
+//! MODULE::`.
 
 mod drawing;
 mod kept;

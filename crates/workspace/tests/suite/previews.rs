@@ -1,4 +1,4 @@
-//! Large trees are seen much coarser before they are whole, and nothing is left of that.
+//! Large trees appear much coarser before they are whole, and no trace of that remains.
 
 use burgeon::Run;
 use burgeon::document::{PlantId, TreeCommand};
@@ -54,7 +54,7 @@ fn what_grows_nothing_needs_no_preview() {
     workspace.evaluate(&Run::plain()).unwrap();
     let id = workspace.current().unwrap();
     let skin = burgeon::skin::SkinSpec { detail: 0.5, ..Default::default() };
-    workspace.run(TreeCommand::SetSkin(skin).of(id)).unwrap();
+    workspace.run(TreeCommand::SetSkin(skin).for_plant(id)).unwrap();
     assert!(workspace.preview_trees(&Run::plain()).unwrap().is_empty());
     let first = workspace.evaluate(&Run::plain()).unwrap().plants.pop().unwrap();
     assert_eq!(first.stages, ["mesh"]);

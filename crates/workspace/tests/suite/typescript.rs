@@ -13,7 +13,7 @@ pub(crate) fn declare(out: &mut String, schemas: &Map<String, Value>) {
     }
 }
 
-/// The first sentence of a description as a comment.
+/// Returns the first sentence of a description as a comment.
 fn doc(schema: &Value, indent: &str) -> String {
     let Some(text) = schema["description"].as_str() else { return String::new() };
     let text = text.split("\n\n").next().unwrap_or_default().replace('\n', " ");

@@ -1,4 +1,4 @@
-//! What is told of plants and files can be told in Chinese: each code of a warning has its text in the page.
+//! Warnings about plants and files can be translated into Chinese: each code of a warning has its text in the page.
 
 use std::fs;
 use std::path::Path;
@@ -7,20 +7,23 @@ use workspace::Workspace;
 
 const CRATES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const TEXTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/text/zh-errors.ts");
-/// Those that make plants, and those that read the files which a page opens.
-const TOLD: [&str; 9] = [
+/// Crates that make plants, read files or measure.
+const TOLD: [&str; 12] = [
     "bloom/src",
-    "formats/src/drawing",
-    "formats/src/model",
+    "forest/src",
+    "formats/src",
     "growth/src",
     "ink/src",
     "leaf/src",
+    "mechanics/src",
     "reading/src",
+    "scan/src",
     "sketch/src",
     "studio/src",
+    "workspace/src",
 ];
-/// Told in other ways than by a call of `warn` with the code in it.
-const NAMED: [(&str, &[&str]); 15] = [
+/// Warnings made otherwise than by a call of `warn` with the code in it.
+const NAMED: [(&str, &[&str]); 20] = [
     ("unlike-a-plant", &[]),
     ("edit-not-done", &["edit", "word", "why"]),
     ("sample-skipped", &["stroke", "count"]),
@@ -36,12 +39,17 @@ const NAMED: [(&str, &[&str]); 15] = [
     ("colour-under-line", &["count"]),
     ("shade-left-out", &["count"]),
     ("hatching-left-out", &["count"]),
+    ("light-dark", &["value"]),
+    ("light-no-leaves", &[]),
+    ("light-rough", &["value", "bound"]),
+    ("light-leaf-meshes", &["value", "bound"]),
+    ("light-dense", &["value", "bound"]),
 ];
 
 /// A code and the fields that go with it.
 type Found = (String, Vec<String>);
 
-/// What stands in calls of `warn`, before the tests of a file.
+/// Finds the calls of `warn` and the warnings made otherwise, before the tests of a file.
 fn codes(folder: &Path, found: &mut Vec<Found>) {
     for entry in fs::read_dir(folder).expect("a folder of the workspace") {
         let path = entry.expect("an entry").path();
@@ -53,6 +61,9 @@ fn codes(folder: &Path, found: &mut Vec<Found>) {
             for call in code.split(".warn(").skip(1) {
                 let code = call.trim_start().strip_prefix('"').and_then(|rest| rest.split('"').next());
                 found.extend(code.map(|code| (code.to_owned(), Vec::new())));
+            }
+            for made in code.split("code: \"").skip(1) {
+                found.extend(made.split('"').next().map(|code| (code.to_owned(), Vec::new())));
             }
             for call in code.split("base::warn!(").skip(1) {
                 let (code, rest) =
@@ -91,7 +102,7 @@ fn each_warning_has_a_chinese_text() {
     }
 }
 
-/// What a file that was opened has of odd things comes with codes and numbers, not as sentences alone.
+/// Warnings about an opened file have codes and numbers, not sentences alone.
 #[test]
 fn files_are_warned_of_with_codes() {
     let mut workspace = Workspace::default();

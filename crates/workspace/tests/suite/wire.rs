@@ -1,4 +1,4 @@
-//! The TypeScript types of what travels between a page and a workspace, made from the Rust types.
+//! TypeScript types of the messages between a page and a workspace, made from the Rust types.
 //!
 //! `cargo xtask types` writes them to `apps/studio-web/src/wire.ts`; this test fails when that file is stale.
 
@@ -9,12 +9,13 @@ use burgeon::document::Command;
 use burgeon::formats::{DrawingFormat, FormatRow, ModelFormat, StructureFormat};
 use burgeon::shape::ToolKind;
 use burgeon::skin::OrganMaterial;
-use burgeon::{Coded, LeafBalls, Refusal};
+use burgeon::{Coded, Engine, LeafBalls, Refusal};
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use workspace::{
-    Action, DocumentState, ExportRequest, ExportView, GestureRecord, Opened, PenStyle, SceneView,
-    ShapeAnswer, ShapeInput, ShapeReach, WorkspaceError,
+    Action, DocumentState, EngineAnswer, EngineAsk, ExportRequest, ExportView, GestureRecord, LightAsk,
+    LightView, Opened, PenStyle, PrintFigures, SceneView, ShapeAnswer, ShapeInput, ShapeReach,
+    WorkspaceError,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -37,7 +38,7 @@ fn the_types_of_the_page_are_those_of_the_workspace() {
     assert!(made == kept, "stale, run `cargo xtask types`; first {differs:?}");
 }
 
-/// The formats that are written, as the page lists them.
+/// Writes the formats that are written, as the page lists them.
 fn formats(out: &mut String) {
     let models = ModelFormat::ALL.into_iter().map(|f| ("model", f.row()));
     let structures = StructureFormat::ALL.into_iter().map(|f| ("structure", f.row()));
@@ -57,8 +58,18 @@ fn formats(out: &mut String) {
     *out += "} as const;\n";
 }
 
+/// Writes the programs that plants go to, as the page lists them.
+fn engines(out: &mut String) {
+    *out += "\n/** The programs that plants go to, by their words. */\nexport const ENGINES = {\n";
+    for engine in Engine::ALL {
+        let (word, about, endings) = (engine.word(), engine.about(), engine.endings());
+        writeln!(out, "  {word}: {{ about: {about:?}, endings: {endings:?} }},").expect("strings take all");
+    }
+    *out += "} as const;\n";
+}
+
 fn types() -> String {
-    // As the core writes them: every field is there.
+    // Types as the core writes them: every field is present.
     let mut all = SchemaSettings::draft2020_12().for_serialize().into_generator();
     fn add<T: JsonSchema>(all: &mut SchemaGenerator) {
         all.subschema_for::<T>();
@@ -69,6 +80,11 @@ fn types() -> String {
     add::<SceneView>(&mut all);
     add::<Opened>(&mut all);
     add::<ExportRequest>(&mut all);
+    add::<EngineAsk>(&mut all);
+    add::<EngineAnswer>(&mut all);
+    add::<PrintFigures>(&mut all);
+    add::<LightAsk>(&mut all);
+    add::<LightView>(&mut all);
     add::<PenStyle>(&mut all);
     add::<OrganMaterial>(&mut all);
     add::<ExportView>(&mut all);
@@ -90,6 +106,7 @@ fn types() -> String {
     }
     out += "} as const;\n";
     formats(&mut out);
+    engines(&mut out);
     typescript::declare(&mut out, &all.take_definitions(true));
     out
 }

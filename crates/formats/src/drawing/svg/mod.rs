@@ -1,7 +1,7 @@
 //! SVG -> strokes: every visible sub-path is one stroke, in document order.
 //!
-//! Structure, ids and layers come from the XML itself; paths, shapes, transforms, `use` and the few style
-//! properties that matter here are read by the modules beside this one.
+//! Structure, ids and layers come from the XML itself; the modules here read paths, shapes, transforms, `use` and the
+//! few style properties that matter.
 
 mod path;
 mod style;
@@ -34,14 +34,17 @@ const MAX_PIECES: usize = 6_000_000;
 /// Most bytes of attributes after all `use` are expanded: each expansion reads them again.
 const MAX_WORK: usize = 256 << 20;
 
-/// A curve's error as a share of the drawing's diagonal: a tenth of the step that cleaning resamples with.
+/// Tolerance of a flattened curve as a share of the drawing's diagonal: a tenth of the step with which cleaning
+/// resamples.
 const FLATNESS: f64 = 5e-4;
 
-/// The size of letters where a file does not say, as browsers have it; their mean width, and their height above the line, as shares
-/// of the size. Most letters of a text that count.
+/// Font size of a text that gives none, as in browsers, in pixels.
 const USUAL_FONT: f64 = 16.0;
+/// Mean width of a letter, as a share of the font size.
 const LETTER_WIDTH: f64 = 0.52;
+/// Height of letters above the baseline, as a share of the font size.
 const ASCENT: f64 = 0.8;
+/// Most letters of a text that count for its width.
 const MOST_LETTERS: usize = 200;
 
 /// A drawn element in the file's coordinates.
@@ -53,11 +56,11 @@ struct Shape {
     width: Option<f64>,
 }
 
-/// More layers than that are one with the sheet.
+/// Most layers; the elements of further ones are on the sheet itself.
 const MAX_LAYERS: usize = 100;
 
 struct Reader<'a> {
-    /// In the order of ids; of one that several have, the first.
+    /// In the order of ids; the first of several elements with the same id.
     by_id: Vec<(&'a str, NodeId)>,
     sheet: Sheet,
     viewport: DVec2,
@@ -70,7 +73,7 @@ struct Reader<'a> {
     work: usize,
     left_out: LiteMap<&'static str, usize>,
     broken: Vec<Broken>,
-    /// What the `use` elements on the way refer to.
+    /// The targets of the enclosing `use` elements.
     using: Vec<NodeId>,
 }
 
@@ -119,9 +122,10 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     reader.tell(report);
     let title = root.children().find(|n| n.tag_name().name() == "title").and_then(|n| n.text());
     let title = title.map(str::trim).filter(|t| !t.is_empty());
-    // A file's stem names it better than a title that every export of a program shares.
+    // The name of the file is better than a title that all exports of a program share.
     let name = if name.is_empty() { title.unwrap_or_default() } else { name };
-    // What is hidden comes last: numbers of strokes, and all that follows from them, are as if it were not there.
+    // Hidden strokes come last: the numbers of the others, and all that follows from them, are as if the hidden ones
+    // were absent.
     let (hidden, seen): (Vec<Shape>, Vec<Shape>) = reader.shapes.into_iter().partition(|s| s.style.hidden);
     let corners = sheet_corners(root);
     let words: Vec<(DVec2, DVec2)> =
@@ -139,7 +143,7 @@ struct Depth {
 }
 
 impl<'a> Reader<'a> {
-    /// [`Self::enter`], turned in its own box, and what of it a clip path and a mask leave.
+    /// Reads an element by [`Self::enter`], turns it in its own box, and cuts it by its clip path and mask.
     fn walk(
         &mut self,
         node: Node<'a, 'a>,
@@ -158,7 +162,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Leaves out what an element has drawn wholly outside its clip path or mask.
+    /// Removes the shapes of an element that lie wholly outside its clip path or mask.
     fn cut(
         &mut self,
         node: Node<'a, 'a>,
@@ -185,7 +189,7 @@ impl<'a> Reader<'a> {
         for child in clip.children().filter(Node::is_element) {
             self.walk(child, Style::default(), here, deeper)?;
         }
-        // A mask shows through what is painted in it, but black.
+        // A mask shows what lies under any paint in it other than black.
         let shows = |shape: &Shape| {
             let paints = [shape.style.stroke, shape.style.fill];
             !is_mask || paints.iter().any(|p| !matches!(p, Paint::None | Paint::Color([0, 0, 0])))
@@ -193,7 +197,7 @@ impl<'a> Reader<'a> {
         let window = self.shapes.split_off(drawn).iter().filter(|s| shows(s)).filter_map(extent).reduce(both);
         let inside = |shape: &Shape| match (window, extent(shape)) {
             (Some((lo, hi)), Some((from, to))) => from.cmple(hi).all() && to.cmpge(lo).all(),
-            // Of a window that is not read, such as text, nothing is known.
+            // A window whose shapes cannot be read, such as text, cuts nothing off.
             (window, _) => window.is_some() || clip.children().any(|n| n.is_element()),
         };
         let kept: Vec<Shape> = self.shapes.split_off(before).into_iter().filter(inside).collect();
@@ -204,14 +208,14 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Whether an element has a transform about a place in its own box (`transform-box` of CSS).
+    /// Returns whether an element has a transform about a point in its own box (`transform-box` of CSS).
     fn is_turned_in_own_box(&self, node: Node<'_, '_>) -> bool {
         let own =
             |text: String| matches!(text.trim(), "fill-box" | "content-box" | "stroke-box" | "border-box");
         self.said(node, "transform-box").is_some_and(own)
     }
 
-    /// Applies the transform of an element to what it has drawn so far, about a place in the box of that.
+    /// Applies the transform of an element to the shapes that it has drawn so far, about a point in their box.
     fn turn_in_own_box(&mut self, node: Node<'_, '_>, before: usize, parent: DAffine2) {
         let Some(turn) = self.said(node, "transform").and_then(|t| path::transform(&t, self.viewport)) else {
             return;
@@ -239,19 +243,20 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The element with this id.
+    /// Returns the element with this id.
     fn target(&self, node: Node<'a, 'a>, id: &str) -> Option<Node<'a, 'a>> {
         let row = self.by_id.get(self.by_id.partition_point(|row| row.0 < id)).filter(|row| row.0 == id);
         row.and_then(|&(_, id)| node.document().get_node(id))
     }
 
-    /// A property of an element itself: in its style, in the sheet, or as an attribute.
+    /// Returns a property of an element itself: from its style, from the sheet, or from an attribute.
     fn said(&self, node: Node<'_, '_>, name: &str) -> Option<String> {
         let inline = node.attribute("style").and_then(|s| style::declared(s, name)).map(str::to_owned);
         inline.or_else(|| self.sheet.value(node, name)).or_else(|| node.attribute(name).map(str::to_owned))
     }
 
-    /// Bounded recursion: by the nesting of the XML, the chain of `use`, and both together.
+    /// Reads an element and its children. The recursion is bounded by the nesting of the XML, the chain of `use`, and
+    /// both together.
     fn enter(
         &mut self,
         node: Node<'a, 'a>,
@@ -284,7 +289,7 @@ impl<'a> Reader<'a> {
         if depth.uses > MAX_USE {
             return Err(limit("the nesting of `use`", MAX_USE));
         }
-        let mut style = inherited.of(node, &self.sheet);
+        let mut style = inherited.for_child(node, &self.sheet);
         let seen = style.displayed && style.visible;
         if is_layer(node) {
             style.layer = self.layer(node, inherited.hidden || !seen).or(style.layer);
@@ -309,7 +314,7 @@ impl<'a> Reader<'a> {
             "use" => {
                 let shift = DAffine2::from_translation(DVec2::new(self.x(node, "x"), self.y(node, "y")));
                 let href = node.attributes().find(|a| a.name() == "href").map_or("", |a| a.value());
-                // Cairo and others write text as pictures of its letters.
+                // Cairo and other programs write text as outlines of its letters.
                 if href.starts_with("#glyph") {
                     self.leave_out("text");
                     return Ok(());
@@ -325,7 +330,7 @@ impl<'a> Reader<'a> {
                 self.using.push(target.id());
                 let deeper = Depth { uses: depth.uses + 1, ..deeper };
                 if target.tag_name().name() == "symbol" {
-                    let style = style.of(target, &self.sheet);
+                    let style = style.for_child(target, &self.sheet);
                     let here = here
                         * shift
                         * viewport_of(target, [node.attribute("width"), node.attribute("height")]);
@@ -348,11 +353,12 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// About where the words of a text lie, which only a font could say; `None` where they have no place.
+    /// Estimates the box of a text, which only the font would give exactly; `None` if it has no letters or no finite
+    /// box.
     fn box_of_words(&self, node: Node<'_, '_>, here: DAffine2) -> Option<(DVec2, DVec2)> {
         let spans = || node.descendants().filter(|n| matches!(n.tag_name().name(), "text" | "tspan"));
         let placed = |name: &str| spans().find_map(|n| n.attribute(name)).map(str::to_owned);
-        // Both are inherited.
+        // Font size and anchor are inherited.
         let said = |name: &str| spans().chain(node.ancestors()).find_map(|n| self.said(n, name));
         let at = DVec2::new(
             placed("x").map_or(0.0, |v| self.length(&v, 0)),
@@ -375,7 +381,7 @@ impl<'a> Reader<'a> {
         (count > 0 && boxed.0.is_finite() && boxed.1.is_finite()).then_some(boxed)
     }
 
-    /// The row of a layer: new, with a name that no other has. `None` where there are too many.
+    /// Adds a layer under a name that no other has, and returns its row. `None` if there are too many.
     fn layer(&mut self, node: Node<'_, '_>, hidden: bool) -> Option<usize> {
         if self.layers.len() >= MAX_LAYERS {
             return None;
@@ -436,7 +442,7 @@ impl<'a> Reader<'a> {
                 let drawn = r.x > 0.0 && r.y > 0.0;
                 (drawn.then(|| path::ellipse(centre, r)).into_iter().collect(), None)
             }
-            // Definitions, metadata, names of other programs: nothing that is drawn where it stands.
+            // Definitions, metadata, elements of other programs: nothing that is drawn here.
             _ => return,
         };
         if fault.is_some() {
@@ -497,7 +503,7 @@ impl<'a> Reader<'a> {
     }
 
     fn broken(&mut self, node: Node<'_, '_>, attribute: &'static str) {
-        // The place of an element costs a walk over the text: a few are enough for the user to find the rest.
+        // Finding the line of an element costs a walk over the text: a few are enough for the user to find the rest.
         if self.broken.len() < 5 {
             if let Place::Element { name, line } = xml::place(node) {
                 self.broken.push(Broken { name, line, attribute });
@@ -530,18 +536,18 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Whether an element is a layer of Inkscape's.
+/// Returns whether an element is a layer of Inkscape.
 fn is_layer(node: Node<'_, '_>) -> bool {
     node.tag_name().name() == "g"
         && node.attributes().any(|a| a.name() == "groupmode" && a.value() == "layer")
 }
 
-/// A length in user units; percents of `whole`.
+/// Parses a length in user units; percents of `whole`.
 fn length(text: &str, whole: f64) -> f64 {
     let text = text.trim();
     let end = number_end(text);
     let value: f64 = text[..end].parse().unwrap_or(0.0);
-    // CSS: 96 px to the inch.
+    // CSS has 96 px to the inch.
     value
         * match &text[end..] {
             "%" => whole / 100.0,
@@ -564,7 +570,7 @@ fn view_box(node: Node<'_, '_>) -> Option<[f64; 4]> {
     (out[2] > 0.0 && out[3] > 0.0).then_some(out)
 }
 
-/// Width and height of the sheet in user units; zero where the file does not say.
+/// Returns width and height of the sheet in user units; zero if the file does not say.
 fn viewport(root: Node<'_, '_>) -> DVec2 {
     match view_box(root) {
         Some([_, _, w, h]) => DVec2::new(w, h),
@@ -575,7 +581,7 @@ fn viewport(root: Node<'_, '_>) -> DVec2 {
     }
 }
 
-/// The corners of the sheet, y up; `None` where the file does not say.
+/// Returns the corners of the sheet, y up; `None` if the file does not say.
 fn sheet_corners(root: Node<'_, '_>) -> Option<(DVec2, DVec2)> {
     let size = viewport(root);
     let at = view_box(root).map_or(DVec2::ZERO, |[x, y, ..]| DVec2::new(x, y));
@@ -584,7 +590,7 @@ fn sheet_corners(root: Node<'_, '_>) -> Option<(DVec2, DVec2)> {
     (size.min_element() > 0.0).then(|| (DVec2::new(a.x, 0.0 - b.y), DVec2::new(b.x, 0.0 - a.y)))
 }
 
-/// How a sheet is pulled whose sides need not keep their proportion.
+/// Returns the stretch of a sheet whose sides need not keep their proportion.
 fn stretched(root: Node<'_, '_>) -> DAffine2 {
     let free = root.attribute("preserveAspectRatio").is_some_and(|v| v.trim().starts_with("none"));
     let side = |name| root.attribute(name).filter(|v| !v.contains('%')).map(|v| length(v, 0.0));
@@ -596,7 +602,7 @@ fn stretched(root: Node<'_, '_>) -> DAffine2 {
     }
 }
 
-/// Placement of an inner `<svg>`.
+/// Returns the placement of an inner `<svg>`.
 fn nested_viewport(node: Node<'_, '_>) -> DAffine2 {
     if node.tag_name().name() != "svg" {
         return DAffine2::IDENTITY;
@@ -606,7 +612,7 @@ fn nested_viewport(node: Node<'_, '_>) -> DAffine2 {
     shift * viewport_of(node, [node.attribute("width"), node.attribute("height")])
 }
 
-/// From the box that an element shows to the place that it is shown in.
+/// Returns the map from an element's view box to the rectangle in which it is shown.
 fn viewport_of(node: Node<'_, '_>, size: [Option<&str>; 2]) -> DAffine2 {
     let Some([x, y, w, h]) = view_box(node) else { return DAffine2::IDENTITY };
     let [wide, high] = size.map(|v| v.map_or(0.0, |v| length(v, 0.0)));
@@ -630,7 +636,7 @@ fn viewport_of(node: Node<'_, '_>, size: [Option<&str>; 2]) -> DAffine2 {
     DAffine2::from_translation(shift) * DAffine2::from_scale(DVec2::splat(even)) * from
 }
 
-/// `transform-origin`: two lengths, percents of the sheet, or words for its sides.
+/// Parses `transform-origin`: two lengths, percents of the sheet, or words for its sides.
 fn origin(text: &str, sheet: DVec2) -> Option<DVec2> {
     let words: Vec<&str> = text.split_ascii_whitespace().take(2).collect();
     let mut at = [None; 2];
@@ -656,7 +662,7 @@ fn origin(text: &str, sheet: DVec2) -> Option<DVec2> {
     Some(DVec2::new(x.unwrap_or(0.5 * sheet.x), y.unwrap_or(0.5 * sheet.y)))
 }
 
-/// The box of a shape.
+/// Returns the box of a shape.
 fn extent(shape: &Shape) -> Option<(DVec2, DVec2)> {
     let points = shape.paths.iter().flat_map(SubPath::control_points).filter(|p| p.is_finite());
     points.map(|p| (p, p)).reduce(both)
@@ -666,7 +672,7 @@ fn both(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> (DVec2, DVec2) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
-/// What strokes lie on and among.
+/// Surroundings of the strokes.
 struct Around<'a> {
     layers: &'a [Layer],
     /// The corners of the sheet, y up.
@@ -706,7 +712,7 @@ fn strokes(shapes: &[Shape], around: &Around<'_>, report: &mut Report) -> Vec<St
     plain_strokes(shapes.iter().map(figure).collect(), around.sheet, around.words, report)
 }
 
-/// The sheet's y points down, ours up.
+/// Flips y: on the sheet it points down, in our drawings up.
 fn up(p: DVec2) -> DVec2 {
     DVec2::new(p.x, 0.0 - p.y)
 }

@@ -5,7 +5,7 @@ use glam::{DAffine2, DVec2};
 
 use crate::drawing::number_end;
 
-/// A piece of a sub-path, from where the one before it ended.
+/// A piece of a sub-path, from the end of the piece before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Piece {
     Line(DVec2),
@@ -38,7 +38,7 @@ impl SubPath {
         }
     }
 
-    /// Every control point.
+    /// Returns every control point.
     pub(super) fn control_points(&self) -> impl Iterator<Item = DVec2> + '_ {
         let pieces = self.pieces.iter().flat_map(|piece| match *piece {
             Piece::Line(p) => [p, p, p],
@@ -48,7 +48,7 @@ impl SubPath {
         core::iter::once(self.start).chain(pieces)
     }
 
-    /// A polyline that stays within `tolerance` of the curve; at most 128 points a piece.
+    /// Returns a polyline that stays within `tolerance` of the curve; at most 128 points a piece.
     pub(super) fn flatten(&self, tolerance: f64) -> Vec<DVec2> {
         let mut out = Vec::with_capacity(self.pieces.len() + 1);
         let mut at = self.start;
@@ -71,7 +71,8 @@ impl SubPath {
                 }
                 Piece::Cubic(c, d, p) => {
                     let bend = (at - c * 2.0 + d).length().max((c - d * 2.0 + p).length());
-                    // The second derivative is at most 6 * bend, a chord's error an eighth of it per step squared.
+                    // The second derivative is at most 6 * bend; the error of a chord is an eighth of it times the
+                    // step squared.
                     let n = steps(bend * 0.75, tolerance);
                     for i in 1..n {
                         let t = f64::from(i) / f64::from(n);
@@ -91,7 +92,7 @@ impl SubPath {
     }
 }
 
-/// Steps that keep an error of `error` for one step below `tolerance`.
+/// Returns the number of steps that brings an error of `error` for one step below `tolerance`.
 fn steps(error: f64, tolerance: f64) -> u32 {
     let n = (error / tolerance).sqrt().ceil();
     // NaN and infinity come from coordinates that cleaning will refuse.
@@ -156,7 +157,7 @@ struct Builder {
     paths: Vec<SubPath>,
     at: DVec2,
     start: DVec2,
-    /// The last control point, and whether it was a cubic's.
+    /// The last control point, and whether it belongs to a cubic.
     control: Option<(DVec2, bool)>,
     open: bool,
 }
@@ -169,7 +170,7 @@ impl Builder {
 
     fn push(&mut self, piece: Piece) {
         if !self.open {
-            // After a close the next piece begins where the closed path began.
+            // After a close the next piece begins at the start of the closed path.
             self.paths.push(SubPath::new(self.start));
             self.open = true;
         }
@@ -199,7 +200,7 @@ impl Builder {
         }
     }
 
-    /// One command's numbers. `None` when they are missing or broken.
+    /// Reads the numbers of one command. `None` when they are missing or broken.
     fn apply(&mut self, command: u8, s: &mut Scanner<'_>) -> Option<()> {
         let origin = if command.is_ascii_lowercase() { self.at } else { DVec2::ZERO };
         let point = |s: &mut Scanner<'_>| Some(origin + DVec2::new(s.number()?, s.number()?));
@@ -230,7 +231,7 @@ impl Builder {
     }
 }
 
-/// Reads path data. Beside the sub-paths: where it broke, if it did; what was before that is kept, as the
+/// Reads path data. Returns the sub-paths and, if the data are broken, where; what comes before that is kept, as the
 /// standard asks.
 pub(super) fn parse(data: &str) -> (Vec<SubPath>, Option<usize>) {
     let mut s = Scanner { text: data, at: 0 };
@@ -268,7 +269,7 @@ pub(super) fn parse(data: &str) -> (Vec<SubPath>, Option<usize>) {
     (b.paths, None)
 }
 
-/// An elliptical arc as cubics (SVG 1.1 appendix F.6). `turn` in degrees.
+/// Returns an elliptical arc as cubics (SVG 1.1 appendix F.6). `turn` in degrees.
 fn arc(from: DVec2, radii: DVec2, turn: f64, [large, sweep]: [bool; 2], to: DVec2) -> Vec<Piece> {
     let r = radii.abs();
     if from == to {
@@ -315,7 +316,7 @@ fn arc(from: DVec2, radii: DVec2, turn: f64, [large, sweep]: [bool; 2], to: DVec
         .collect()
 }
 
-/// A closed ellipse.
+/// Returns a closed ellipse.
 pub(super) fn ellipse(centre: DVec2, r: DVec2) -> SubPath {
     let right = centre + DVec2::new(r.x, 0.0);
     let left = centre - DVec2::new(r.x, 0.0);
@@ -326,7 +327,7 @@ pub(super) fn ellipse(centre: DVec2, r: DVec2) -> SubPath {
     path
 }
 
-/// A rectangle with corners rounded by `r` (zero: sharp).
+/// Returns a rectangle with corners rounded by `r` (zero: sharp).
 pub(super) fn rect(at: DVec2, size: DVec2, r: DVec2) -> SubPath {
     let r = r.max(DVec2::ZERO).min(size * 0.5);
     let p = |x: f64, y: f64| at + DVec2::new(x, y);
@@ -350,7 +351,7 @@ pub(super) fn rect(at: DVec2, size: DVec2, r: DVec2) -> SubPath {
     path
 }
 
-/// A line through points, closed for a polygon.
+/// Returns a line through points, closed for a polygon.
 pub(super) fn poly(points: &str, closed: bool) -> (Option<SubPath>, Option<usize>) {
     let mut s = Scanner { text: points, at: 0 };
     let mut path: Option<SubPath> = None;
@@ -367,7 +368,7 @@ pub(super) fn poly(points: &str, closed: bool) -> (Option<SubPath>, Option<usize
     (path, None)
 }
 
-/// Degrees, pixels and percents of the sheet for a number with a unit of CSS; plain numbers stay.
+/// Converts a number with a unit of CSS into degrees or pixels, percents by `whole`; plain numbers stay.
 fn unit(name: &str, value: f64, whole: f64) -> Option<f64> {
     Some(match name {
         "" | "px" | "deg" => value,
@@ -384,7 +385,7 @@ fn unit(name: &str, value: f64, whole: f64) -> Option<f64> {
     })
 }
 
-/// Numbers with the units of CSS; percents are of the sheet's sides in turn.
+/// Parses numbers with the units of CSS; percents refer to the sheet's width and height in turn.
 pub(super) fn css_numbers(text: &str, sheet: DVec2) -> Option<Vec<f64>> {
     let mut s = Scanner { text, at: 0 };
     let mut v = Vec::new();
@@ -398,8 +399,8 @@ pub(super) fn css_numbers(text: &str, sheet: DVec2) -> Option<Vec<f64>> {
     Some(v)
 }
 
-/// `transform="..."`, or the same as CSS: translate, scale, rotate, skew, matrix, also along one axis. `None` if it is
-/// broken.
+/// Parses `transform="..."`, or the same as CSS: translate, scale, rotate, skew, matrix, also along one axis. `None`
+/// if it is broken.
 pub(super) fn transform(text: &str, sheet: DVec2) -> Option<DAffine2> {
     if text.trim() == "none" {
         return Some(DAffine2::IDENTITY);
@@ -410,7 +411,7 @@ pub(super) fn transform(text: &str, sheet: DVec2) -> Option<DAffine2> {
         let (name, after) = rest.split_once('(')?;
         let (inside, after) = after.split_once(')')?;
         rest = after.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
-        // What is scaled is scaled by a share of itself, not of the sheet.
+        // Percents in a scale are shares of 1, not of the sheet.
         let whole = if name.trim().starts_with("scale") { DVec2::ONE } else { sheet };
         let v = css_numbers(inside, whole)?;
         let radians = |deg: f64| deg % 360.0 * (ops::PI / 180.0);

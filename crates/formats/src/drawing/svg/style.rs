@@ -8,12 +8,12 @@ use roxmltree::Node;
 use crate::drawing::mode::mode_in;
 use crate::drawing::{parse_color, xml};
 
-/// How a line or an area is painted.
+/// Paint of a line or an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Paint {
     None,
     Color([u8; 3]),
-    /// A gradient or pattern: painted, but no single colour.
+    /// A gradient or pattern: painted, but not with a single colour.
     Server,
 }
 
@@ -23,12 +23,12 @@ impl Paint {
     }
 }
 
-/// What an element inherits and hands down.
+/// The style that an element inherits and hands down.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Style {
     pub(super) stroke: Paint,
     pub(super) fill: Paint,
-    /// Somebody asked for this fill: black is only what SVG does unasked.
+    /// The file asks for this fill; otherwise it is SVG's default of black.
     pub(super) fill_said: bool,
     color: [u8; 3],
     pub(super) visible: bool,
@@ -37,9 +37,9 @@ pub(super) struct Style {
     pub(super) mode: StrokeMode,
     /// In the units of the element.
     pub(super) width: Option<f64>,
-    /// The line has no width: it is not seen.
+    /// The line has no width: it is invisible.
     no_width: bool,
-    /// Of all ancestors together.
+    /// Product of the opacities of the element and all ancestors.
     pub(super) opacity: f64,
     fill_opacity: f64,
     stroke_opacity: f64,
@@ -47,7 +47,7 @@ pub(super) struct Style {
     pub(super) even_odd: bool,
     /// Row of the layer.
     pub(super) layer: Option<usize>,
-    /// On a layer that is hidden.
+    /// The element is on a hidden layer.
     pub(super) hidden: bool,
 }
 
@@ -73,32 +73,32 @@ impl Default for Style {
     }
 }
 
-/// Paint of less opacity is not seen.
+/// Paint of less than this opacity is invisible.
 const UNSEEN: f64 = 0.004;
 
-/// What a value of `url(#..)` means: the mean colour of a gradient.
+/// Meaning of the values `url(#..)`: the mean colour of each gradient.
 pub(super) type Servers = LiteMap<String, [u8; 3]>;
 
 impl Style {
-    /// Whether its line is seen.
+    /// Returns whether the line is visible.
     pub(super) fn is_lined(&self) -> bool {
         self.stroke != Paint::None && !self.no_width && self.opacity * self.stroke_opacity > UNSEEN
     }
 
-    /// Whether its area is seen.
+    /// Returns whether the area is visible.
     pub(super) fn is_filled(&self) -> bool {
         self.fill != Paint::None && self.area_opacity() > UNSEEN
     }
 
-    /// How opaque its area is.
+    /// Returns the opacity of the area.
     pub(super) fn area_opacity(&self) -> f64 {
         self.opacity * self.fill_opacity
     }
 
-    /// The style of `node`, whose parent has `self`.
-    pub(super) fn of(self, node: Node<'_, '_>, sheet: &Sheet) -> Self {
+    /// Returns the style of `node`, whose parent has `self`.
+    pub(super) fn for_child(self, node: Node<'_, '_>, sheet: &Sheet) -> Self {
         let mut style = Self { displayed: true, opacity: 1.0, ..self };
-        // `color` first: the others may refer to it.
+        // `color` comes first, because the others may refer to it.
         for name in [
             "color",
             "stroke",
@@ -119,7 +119,7 @@ impl Style {
         if let Some(inline) = node.attribute("style") {
             declarations(inline).for_each(|(name, value)| style.set(name, value, &sheet.servers));
         }
-        // Opacity is not inherited: what is below is seen through all of them.
+        // Opacity is not inherited, but multiplied: an element is seen through all of its ancestors.
         style.opacity *= self.opacity;
         if let Some(mode) = own_mode(node) {
             style.mode = mode;
@@ -142,7 +142,7 @@ impl Style {
             "visibility" => self.visible = !matches!(value, "hidden" | "collapse"),
             "display" => self.displayed = value != "none",
             "stroke-width" => {
-                // Of a percentage of the sheet nobody draws.
+                // Nobody gives a width as a percentage of the sheet.
                 let width = super::length(value, 0.0);
                 self.no_width = width == 0.0 && value.starts_with(['0', '.']);
                 self.width = Some(width).filter(|w| w.is_finite() && *w > 0.0);
@@ -169,7 +169,7 @@ impl Style {
     }
 }
 
-/// A number from 0 to 1, or a percentage.
+/// Parses a number from 0 to 1, or a percentage.
 fn share(text: &str) -> Option<f64> {
     let value = match text.trim().strip_suffix('%') {
         Some(percent) => percent.trim().parse::<f64>().ok()? / 100.0,
@@ -178,7 +178,7 @@ fn share(text: &str) -> Option<f64> {
     value.is_finite().then_some(value.clamp(0.0, 1.0))
 }
 
-/// Whether a colour has an alpha of its own that is 0.
+/// Returns whether a colour has an alpha of its own that is 0.
 fn is_clear(value: &str) -> bool {
     let inner = value.strip_prefix("rgba(").or_else(|| value.strip_prefix("rgb("));
     if let Some(inner) = inner {
@@ -192,13 +192,13 @@ fn is_clear(value: &str) -> bool {
     })
 }
 
-/// The id of `url(#id)`, and what follows it.
+/// Returns the id of `url(#id)`, and the text after it.
 pub(super) fn reference(value: &str) -> Option<(&str, &str)> {
     let (inside, rest) = value.trim().strip_prefix("url(")?.split_once(')')?;
     Some((inside.trim().trim_matches(['"', '\'']).strip_prefix('#')?, rest.trim()))
 }
 
-/// The mean colour of each gradient; one that refers to another has that one's.
+/// Returns the mean colour of each gradient; one that refers to another has that one's.
 pub(super) fn servers(root: Node<'_, '_>, sheet: &Sheet) -> Servers {
     let mut own = Servers::new();
     let mut refers: Vec<(String, String)> = Vec::new();
@@ -213,7 +213,7 @@ pub(super) fn servers(root: Node<'_, '_>, sheet: &Sheet) -> Servers {
             refers.push((id.to_owned(), href.to_owned()));
         }
     }
-    // A few rounds follow any chain that a program writes.
+    // Four rounds follow any chain that a program writes.
     for _ in 0..4 {
         for (id, href) in &refers {
             if let Some(&color) = own.get(href) {
@@ -251,15 +251,15 @@ fn mean(colors: &[[u8; 3]]) -> Option<[u8; 3]> {
     Some([channel(0), channel(1), channel(2)])
 }
 
-/// The mode that an element's own label, id or class asks for.
+/// Returns the mode that an element's own label, id or class asks for.
 fn own_mode(node: Node<'_, '_>) -> Option<StrokeMode> {
     ["data-mode", "label", "id", "data-name", "class"].iter().find_map(|name| {
-        // By local name: the label lives in Inkscape's name space.
+        // Attributes are found by local name: the label lives in Inkscape's name space.
         node.attributes().filter(|a| a.name() == *name).find_map(|a| mode_in(a.value()))
     })
 }
 
-/// The last value that a declaration block gives a property.
+/// Returns the last value that a declaration block gives a property.
 pub(super) fn declared<'t>(text: &'t str, wanted: &str) -> Option<&'t str> {
     declarations(text).filter(|(name, _)| *name == wanted).last().map(|(_, value)| value)
 }
@@ -268,11 +268,11 @@ fn declarations(text: &str) -> impl Iterator<Item = (&str, &str)> {
     text.split(';').filter_map(|d| d.split_once(':')).map(|(name, value)| (name.trim(), value.trim()))
 }
 
-/// The rules of `<style>` elements: selectors of tags, classes, ids and `*`, alone, together (`g.leaf#a`), as descendants
+/// Rules of `<style>` elements: selectors of tags, classes, ids and `*`, alone, together (`g.leaf#a`), as descendants
 /// (`.a .b`) and as children (`.a > .b`).
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
-    /// By the last simple part of the selector, which finds the rules of an element: rules in the order of the sheet.
+    /// Rules in the order of the sheet, by the last simple part of the selector, which finds the rules of an element.
     rules: LiteMap<String, Vec<Rule>>,
     count: usize,
     /// Colours of gradients.
@@ -281,13 +281,13 @@ pub(super) struct Sheet {
     pub(super) ignored: usize,
 }
 
-/// A rule that concerns us.
+/// A rule with properties that the reader uses.
 #[derive(Debug)]
 struct Rule {
     selector: Vec<Compound>,
-    /// Ids, classes, tags.
+    /// Number of ids, classes and tags.
     weight: [usize; 3],
-    /// At most one for each property that concerns us: a later rule of the same selector replaces it.
+    /// At most one for each property that the reader uses: a later rule of the same selector replaces it.
     wanted: Vec<Declared>,
 }
 
@@ -299,20 +299,21 @@ struct Declared {
     order: usize,
 }
 
-/// Simple selectors that one element has to meet, and whether the one before it is its parent.
+/// Simple selectors that one element has to meet, and whether the compound before it stands for the parent.
 #[derive(Debug, Default, PartialEq)]
 struct Compound {
     simple: Vec<String>,
     child: bool,
 }
 
-/// More rules than any drawing has: the rest is not looked at.
+/// Most rules, more than any drawing has: the reader ignores the rest.
 const MAX_RULES: usize = 20_000;
-/// More selectors that end in one name than any drawing has: each element of that name is compared with all of them.
+/// Most selectors that end in one name, more than any drawing has: each element of that name is compared with all of
+/// them.
 const MAX_SELECTORS_OF_NAME: usize = 256;
-/// More simple selectors in a row than any drawing has.
+/// Most simple selectors in a row, more than any drawing has.
 const MAX_SIMPLE: usize = 16;
-/// More rules within rules than any program writes.
+/// Deepest nesting of rules within rules, deeper than any program writes.
 const MAX_NESTED: usize = 4;
 
 impl Sheet {
@@ -320,11 +321,11 @@ impl Sheet {
         self.add_rules(&without_comments(text), 0);
     }
 
-    /// Rules, and those within rules for screens, as deep as programs nest them.
+    /// Adds rules, and those within rules for screens, as deep as programs nest them.
     fn add_rules(&mut self, text: &str, depth: usize) {
         let mut rest = text;
         while let Some((before, after)) = rest.split_once('{') {
-            // `@charset` and `@import` end where they stand.
+            // `@charset` and `@import` end at their semicolon.
             let prelude = before.rsplit(';').next().unwrap_or_default().trim();
             let end = block_end(after);
             let body = &after[..end];
@@ -337,11 +338,11 @@ impl Sheet {
         }
     }
 
-    /// The declarations of one block for each of its selectors.
+    /// Adds the declarations of one block for each of its selectors.
     fn add_block(&mut self, selectors: &str, body: &str) {
         let wanted: Vec<(String, String)> = declarations(body)
             .filter(|(name, _)| CONCERNS.contains(name))
-            // No value that we understand is longer; every element reads them.
+            // No value that the reader knows is longer; every element reads them.
             .map(|(name, value)| (name.to_owned(), value.chars().take(64).collect()))
             .collect();
         if wanted.is_empty() {
@@ -373,7 +374,7 @@ impl Sheet {
             rules.push(Rule { selector, weight, wanted: Vec::new() });
         }
         let [ids, classes, _] = rules[row].weight;
-        // The width of all paths alike is that of the pen, and says nothing of a stroke; our own files have it.
+        // One width for all paths is that of the pen, and does not describe a stroke; our own files have it.
         let is_usual = |name: &str, value: &str| {
             name == "stroke-width" && ids + classes == 0 && !value.trim_start_matches(['0', '.']).is_empty()
         };
@@ -387,7 +388,7 @@ impl Sheet {
         self.each_of(node, |name, value| style.set(name, value, &self.servers));
     }
 
-    /// The last value that the sheet gives a property of an element.
+    /// Returns the last value that the sheet gives a property of an element.
     pub(super) fn value(&self, node: Node<'_, '_>, wanted: &str) -> Option<String> {
         let mut found = None;
         self.each_of(node, |name, value| {
@@ -398,7 +399,7 @@ impl Sheet {
         found
     }
 
-    /// All that the sheet says of an element, the weightiest last.
+    /// Calls `set` with all declarations of the sheet for an element, by increasing weight.
     fn each_of(&self, node: Node<'_, '_>, mut set: impl FnMut(&str, &str)) {
         if self.rules.is_empty() {
             return;
@@ -421,7 +422,7 @@ impl Sheet {
     }
 }
 
-/// Where the block ends that `text` begins within: its closing brace, or the end of the text.
+/// Returns the end of the block within which `text` begins: its closing brace, or the end of the text.
 fn block_end(text: &str) -> usize {
     let mut open = 0_usize;
     for (at, c) in text.char_indices() {
@@ -435,7 +436,7 @@ fn block_end(text: &str) -> usize {
     text.len()
 }
 
-/// Whether the rules within an at-rule (its words after the `@`) count for a light screen.
+/// Returns whether the rules within an at-rule (its words after the `@`) apply to a light screen.
 fn holds_on_screen(rule: &str) -> bool {
     let rule = rule.to_ascii_lowercase();
     let (name, query) = rule.split_once(|c: char| c.is_whitespace() || c == '(').unwrap_or((&rule, ""));
@@ -446,7 +447,7 @@ fn holds_on_screen(rule: &str) -> bool {
     }
 }
 
-/// How many ids, classes and tags a selector names: the more, the weightier.
+/// Returns the number of ids, classes and tags that a selector names: the more, the greater its weight.
 fn weight_of(selector: &[Compound]) -> [usize; 3] {
     let simple = || selector.iter().flat_map(|c| &c.simple);
     let count = |first: char| simple().filter(|s| s.starts_with(first)).count();
@@ -454,7 +455,7 @@ fn weight_of(selector: &[Compound]) -> [usize; 3] {
     [ids, classes, simple().filter(|s| *s != "*").count() - ids - classes]
 }
 
-/// The properties that concern us.
+/// Properties that the reader uses.
 const CONCERNS: [&str; 18] = [
     "color",
     "stroke",
@@ -476,7 +477,7 @@ const CONCERNS: [&str; 18] = [
     "text-anchor",
 ];
 
-/// A selector, taken apart; `None` if it asks for more than names, or for too much.
+/// Parses a selector; `None` if it asks for more than names, or is too long.
 fn selector_of(text: &str) -> Option<Vec<Compound>> {
     let mut out: Vec<Compound> = Vec::new();
     let mut child = false;
@@ -506,7 +507,7 @@ fn selector_of(text: &str) -> Option<Vec<Compound>> {
     ((1..=MAX_SIMPLE).contains(&all) && !child && !out[0].child).then_some(out)
 }
 
-/// Whether an element meets a selector; of ancestors that a part can mean, the nearest is taken.
+/// Returns whether an element meets a selector; if several ancestors match a part, the nearest is taken.
 fn meets(node: Node<'_, '_>, selector: &[Compound]) -> bool {
     let mut at = Some(node);
     let mut anywhere = false;

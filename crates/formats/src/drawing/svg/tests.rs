@@ -97,7 +97,7 @@ fn what_is_not_seen_is_left_out_and_said() {
     assert_eq!(d.strokes.len(), 1);
     let all = w.join("\n");
     for word in [
-        "1 lines are paper",
+        "1 lines belong to the paper",
         "hidden (2)",
         "without stroke and fill (1)",
         "text (1)",

@@ -9,14 +9,15 @@ use ink::{Drawing, Layer, Stroke, StrokeMode};
 use crate::drawing::mode::mode_in;
 use crate::error::WriteError;
 
-/// The pen of strokes without a width of their own, as a share of the drawing's diagonal.
+/// Pen width of strokes that have none, as a share of the drawing's diagonal.
 const PEN: f64 = 0.004;
 
-/// Writes a drawing as SVG with the layers of Inkscape: what is on no layer first, then the layers from below upwards.
+/// Writes a drawing as SVG with the layers of Inkscape: first the strokes on no layer, then the layers from below
+/// upwards.
 ///
 /// Guaranteed: [`read_drawings`](crate::read_drawings) gives back the same strokes with their points, modes, colours,
-/// widths, ids and layers, in the order in which they are written; those of hidden layers come last. Points that are not
-/// finite are left out, and so are strokes of fewer than two.
+/// widths, ids and layers, in the order in which they are written; those of hidden layers come last. Points that are
+/// not finite are left out, and so are strokes of fewer than two.
 /// Not guaranteed: pressures and times, which SVG has no place for.
 ///
 /// # Errors
@@ -90,7 +91,7 @@ fn path(stroke: &Stroke, layer: Option<&Layer>, out: &mut impl Write) -> Result<
     if let Some(id) = &stroke.id {
         write!(out, " id=\"{}\"", escaped_xml(id))?;
     }
-    // The name of the layer or of the stroke may sound like a mode.
+    // The name of the layer or of the stroke may look like a mode.
     let named = stroke.id.as_deref().and_then(mode_in).or_else(|| mode_in(&layer?.name));
     match stroke.mode {
         StrokeMode::BranchContour => out.write_all(b" data-mode=\"branch-contour\"")?,
@@ -102,7 +103,7 @@ fn path(stroke: &Stroke, layer: Option<&Layer>, out: &mut impl Write) -> Result<
         write!(out, " stroke=\"#{r:02x}{g:02x}{b:02x}\"")?;
     }
     if let Some(width) = stroke.width {
-        // As a style, which goes before the sheet's.
+        // Written as a style, which takes precedence over the sheet.
         write!(out, " style=\"stroke-width:{width}\"")?;
     }
     out.write_all(b" d=\"")?;

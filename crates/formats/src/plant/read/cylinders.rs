@@ -11,9 +11,9 @@ use super::{Fault, fault_at};
 pub(super) struct Cylinder {
     /// Both ends, metres, +Y up.
     pub(super) ends: [DVec3; 2],
-    /// Radius of the whole; not a number: unknown.
+    /// Mean radius, metres; not a number if unknown.
     pub(super) radius: f64,
-    /// Radii at both ends, where they are known.
+    /// Radii at both ends, if they are known.
     pub(super) end_radii: Option<[f64; 2]>,
     pub(super) parent: Option<usize>,
     pub(super) link: Link,
@@ -21,21 +21,22 @@ pub(super) struct Cylinder {
     pub(super) line: usize,
 }
 
-/// Nearer to an end than this share of a cylinder, what hangs on it hangs on that end.
+/// A child nearer to an end of a cylinder than this share of its length hangs on that end.
 const SNAP: f64 = 0.02;
-/// A cylinder begins on the surface of what bears it, or in it: farther away, beside the bearer's radius, is a gap.
+/// A child that begins farther from its place on the bearer than this factor of the bearer's radius leaves a gap;
+/// others begin on the bearer's surface or in it.
 const GAP: f64 = 2.0;
 
-/// Where something hangs on a cylinder: a share of its length.
+/// A child on a cylinder, and its place there as a share of the cylinder's length.
 struct Hanging {
     share: f64,
     child: usize,
 }
 
-/// The joints of cylinders, and the joint at which each cylinder ends.
+/// Returns the joints of cylinders, and the joint at which each cylinder ends.
 ///
 /// # Errors
-/// Parents that lead round in a circle.
+/// Parents that form a circle.
 pub(super) fn joined(cylinders: &[Cylinder]) -> Result<(Vec<Joint>, Vec<usize>), Fault> {
     let mut hanging: Vec<Vec<Hanging>> = Vec::new();
     hanging.resize_with(cylinders.len(), Vec::new);
@@ -73,7 +74,7 @@ fn share_of(bearer: &Cylinder, at: DVec3) -> f64 {
 
 struct Joints {
     joints: Vec<Joint>,
-    /// The joint that each cylinder begins at.
+    /// The joint at which each cylinder begins.
     attach: Vec<Option<usize>>,
     ends: Vec<usize>,
 }
@@ -98,7 +99,7 @@ impl Joints {
         let apart = self.joints[last].at.distance(c.ends[0]);
         let bearer = c.parent.map_or(0.0, |p| cylinders[p].radius);
         let whole = c.ends[0].distance(c.ends[1]);
-        // Small gaps of an axis close at its next place.
+        // Small gaps within an axis close at its next place.
         let least = if link == Link::Follows { 0.5 * whole } else { GAP * bearer };
         let is_gap = apart > least.max(SNAP * whole);
         let base_radius = radius_at(0.0);

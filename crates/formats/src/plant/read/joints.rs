@@ -1,4 +1,4 @@
-//! Places that hang on one another -> axes of plants.
+//! Joints that hang on one another -> axes of plants.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,7 +9,7 @@ use plant::{AxisKind, NodeId, PipeModel, Plant, Taper, pipe_radii};
 use super::{Fault, LIMITS, StructureTally, fault_at};
 use crate::error::FileFault;
 
-/// How a place hangs on the one before it.
+/// Connection of a joint to its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Link {
     /// It is the next node of the same axis.
@@ -25,20 +25,20 @@ pub(super) enum Link {
 pub(super) struct Joint {
     /// Metres, +Y up.
     pub(super) at: DVec3,
-    /// Radius there, metres; not a number: unknown, as in the two below.
+    /// Radius there, metres; not a number if unknown, as in the next two fields.
     pub(super) radius: f64,
-    /// If an axis begins with the way to this place: its radius at the base.
+    /// Radius at the base of the axis that begins with this joint, metres.
     pub(super) base_radius: f64,
-    /// Of the cylinder that ends here.
+    /// Radius of the cylinder that ends here, metres.
     pub(super) cylinder: f64,
-    /// The place that it hangs on.
+    /// The joint on which it hangs.
     pub(super) parent: Option<usize>,
     pub(super) link: Link,
-    /// Of the axis that begins with it.
+    /// Kind of the axis that begins with it.
     pub(super) kind: AxisKind,
     /// The plant of the file that it belongs to, if the file has plants.
     pub(super) plant: Option<usize>,
-    /// Where it is in the file.
+    /// Its line in the file.
     pub(super) line: usize,
 }
 
@@ -59,30 +59,30 @@ impl Joint {
     }
 }
 
-/// The plants, and what became of each joint.
+/// The plants, and the place of each joint in them.
 pub(super) struct Built {
     pub(super) plants: Vec<Plant>,
-    /// The plant and node at which a joint is; none where it is in no plant.
+    /// The plant and node of each joint; none if it is in no plant.
     pub(super) nodes: Vec<Option<(usize, NodeId)>>,
     pub(super) tally: StructureTally,
 }
 
-/// Feet nearer to each other than this share of the height of all stand for stems of one plant: a clump of hazel 6 m high
-/// is half a metre wide.
+/// Stems whose feet are nearer to each other than this share of their greatest height form one plant: a clump of
+/// hazel 6 m high is half a metre wide.
 const CLUMP: f64 = 0.1;
-/// And nearer than this, metres: trees of a forest stand farther apart.
+/// Greatest distance of such feet, metres: trees of a forest stand farther apart.
 const CLUMP_MOST_M: f64 = 1.0;
-/// Radii that differ by less do not say which branch goes on.
+/// Radii that differ by less than this share do not decide which branch continues the axis.
 const AS_THICK: f64 = 0.05;
-/// Places this near to each other, beside their distance from the origin, are one.
+/// Joints nearer to each other than this share of one metre plus their distance from the origin are the same.
 const SAME: f64 = 1e-9;
-/// What is left of the radius of an axis without any at its base and at its tip, beside that of its bearer.
+/// Radii of an axis without any, at its base and at its tip, as shares of its bearer's radius.
 const THINNED: [f64; 2] = [0.5, 0.15];
 
 /// Joins joints to axes, and axes to plants.
 ///
 /// # Errors
-/// Parents that lead round in a circle, too many roots.
+/// Parents that form a circle, too many roots.
 pub(super) fn build(joints: &[Joint]) -> Result<Built, Fault> {
     let order = ordered(joints)?;
     let tree = Tree::new(joints, &order);
@@ -95,7 +95,7 @@ pub(super) fn build(joints: &[Joint]) -> Result<Built, Fault> {
     for roots in groups {
         tree.add_plant(joints, &roots, &mut built);
     }
-    // What lies at the same place is the same node.
+    // Joints at the same place share a node.
     for &j in &order {
         if tree.same_as[j] != j {
             built.nodes[j] = built.nodes[tree.same_as[j]];
@@ -105,13 +105,13 @@ pub(super) fn build(joints: &[Joint]) -> Result<Built, Fault> {
     Ok(built)
 }
 
-/// The rows of joints, parents before what hangs on them.
+/// Returns the rows of joints, parents before their children.
 fn ordered(joints: &[Joint]) -> Result<Vec<usize>, Fault> {
     let children = Children::new(joints.len(), |j| joints[j].parent);
     let mut order: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].parent.is_none()).collect();
     let mut next = 0;
     while let Some(&j) = order.get(next) {
-        order.extend_from_slice(children.of(j));
+        order.extend_from_slice(children.get(j));
         next += 1;
     }
     if order.len() == joints.len() {
@@ -124,7 +124,7 @@ fn ordered(joints: &[Joint]) -> Result<Vec<usize>, Fault> {
     Err(fault_at(joints[first].line, "what it hangs on leads round in a circle", advice))
 }
 
-/// Which rows hang on which.
+/// The children of each row.
 struct Children {
     starts: Vec<usize>,
     rows: Vec<usize>,
@@ -148,12 +148,12 @@ impl Children {
         Self { starts, rows }
     }
 
-    fn of(&self, row: usize) -> &[usize] {
+    fn get(&self, row: usize) -> &[usize] {
         &self.rows[self.starts[row]..self.starts[row + 1]]
     }
 }
 
-/// Joints without those that lie at the place of the one before.
+/// Joints without those that lie at the place of their parent.
 struct Tree {
     /// The joint at whose place each lies: itself for most.
     same_as: Vec<usize>,
@@ -162,7 +162,7 @@ struct Tree {
     radius: Vec<f64>,
     base_radius: Vec<f64>,
     children: Children,
-    /// Which child goes on with the axis.
+    /// The child that continues the axis of each joint.
     next: Vec<Option<usize>>,
 }
 
@@ -177,7 +177,7 @@ impl Tree {
         for &j in order {
             let Some(before) = joints[j].parent else { continue };
             let on = same_as[before];
-            // A branch that begins with a place on its bearer begins with the one after it.
+            // If the first place of a branch lies on its bearer, the branch begins with the next place.
             if before != on && link[before] == Link::Branches {
                 link[j] = Link::Branches;
                 if base_radius[j].is_nan() {
@@ -209,13 +209,13 @@ impl Tree {
         tree
     }
 
-    /// The child with which the axis of a joint goes on.
+    /// Returns the child that continues the axis of a joint.
     fn going_on(&self, row: usize, joints: &[Joint], far: &[f64]) -> Option<usize> {
-        let children = self.children.of(row);
+        let children = self.children.get(row);
         if let Some(&said) = children.iter().find(|&&c| self.link[c] == Link::Follows) {
             return Some(said);
         }
-        // An axis has two places at least.
+        // An axis has at least two places.
         let is_root = self.parent[row].is_none();
         let able = children.iter().copied().filter(|&c| is_root || self.link[c] == Link::Unsaid);
         able.reduce(|best, c| {
@@ -229,7 +229,7 @@ impl Tree {
         })
     }
 
-    /// The roots of each plant.
+    /// Returns the roots of each plant.
     fn plants(&self, joints: &[Joint]) -> Result<Vec<Vec<usize>>, Fault> {
         let is_root = |j: &usize| self.parent[*j].is_none() && self.next[*j].is_some();
         let roots: Vec<usize> = (0..joints.len()).filter(is_root).collect();
@@ -278,7 +278,7 @@ impl Tree {
                 built.tally.radii_missing += u64::from(
                     self.radius[j].is_nan() && joints[j].cylinder.is_nan() && self.parent[j].is_some(),
                 );
-                let others = self.children.of(j).iter().filter(|&&c| Some(c) != self.next[j]);
+                let others = self.children.get(j).iter().filter(|&&c| Some(c) != self.next[j]);
                 waiting.extend(others.map(|&c| Reverse((joints[c].line, c))));
             }
             if bearer.is_some() {
@@ -292,8 +292,8 @@ impl Tree {
     }
 }
 
-/// Gives every node a radius: that of the file, of the cylinders beside it, or of its neighbours. `cylinders`: of the cylinder
-/// that ends at each node.
+/// Gives every node a radius: from the file, from the adjacent cylinders, or from its neighbours. `cylinders`: radius
+/// of the cylinder that ends at each node.
 fn set_radii(plant: &mut Plant, cylinders: &[f64]) {
     let known = plant.nodes.radius_m.iter().chain(cylinders).any(|r| !r.is_nan());
     if !known {
@@ -316,14 +316,14 @@ fn set_radii(plant: &mut Plant, cylinders: &[f64]) {
     }
 }
 
-/// The pipe model of a plant whose radii nobody measured: its foot is a sixtieth of its height.
+/// Returns the pipe model of a plant without measured radii: its foot is a sixtieth of its height.
 fn usual_pipes() -> PipeModel {
     let taper = Taper { s: 1.0, alpha: 0.5, m: 0.0 };
     let (ground, drawn) = (vec![], vec![]);
     PipeModel { exponent: 2.5, taper, min_radius_m: 0.0, max_per_length: 0.05, ground, drawn }
 }
 
-/// Radii of an axis that has none: from half of its bearer's at the base to less at the tip.
+/// Sets the radii of an axis that has none: from half of its bearer's at the base to less at the tip.
 fn thin_out(radii: &mut [f64], points: &[DVec3], below: f64) {
     let whole = geom::polyline_length3(points).max(f64::MIN_POSITIVE);
     let mut gone = 0.0;
@@ -333,7 +333,7 @@ fn thin_out(radii: &mut [f64], points: &[DVec3], below: f64) {
     }
 }
 
-/// Nodes without a radius get one of the cylinders on both sides, such that the axis keeps its volume.
+/// Sets missing radii from the cylinders on both sides, such that the axis keeps its volume.
 fn from_cylinders(radii: &mut [f64], cylinders: &[f64], points: &[DVec3]) {
     let count = radii.len();
     let unknown: Vec<usize> = (0..count).filter(|&k| radii[k].is_nan()).collect();
@@ -344,7 +344,7 @@ fn from_cylinders(radii: &mut [f64], cylinders: &[f64], points: &[DVec3]) {
             radii[k] = (there.iter().map(|r| r * r).sum::<f64>() / there.len() as f64).sqrt();
         }
     }
-    // All of them, or the scale would set apart what the file says.
+    // Only if all are missing; otherwise the scale would change radii relative to those from the file.
     if unknown.len() < count || cylinders[1..].iter().chain(&*radii).any(|r| r.is_nan()) {
         return;
     }
@@ -361,7 +361,7 @@ fn from_cylinders(radii: &mut [f64], cylinders: &[f64], points: &[DVec3]) {
     }
 }
 
-/// Fills what is left by its neighbours, by the way between them.
+/// Interpolates missing radii between their neighbours, by the distance along the axis.
 fn between(radii: &mut [f64], points: &[DVec3]) {
     let mut gone = vec![0.0; points.len()];
     for k in 1..points.len() {

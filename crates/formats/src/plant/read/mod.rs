@@ -22,10 +22,10 @@ use crate::error::{FileFault, Place, Placed};
 use crate::foreign::Foreign;
 use joints::Built;
 
-/// How the structure of plants is read: what the file does not say itself.
+/// Settings for reading the structure of plants, where the file does not give them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StructureSpec {
-    /// Which axis points up; none: as the file says, or +Z, as in the programs that write such files.
+    /// The axis that points up; none: as the file says, or +Z, as in the programs that write such files.
     pub up: Option<UpAxis>,
     /// Metres per unit of length, above 0; none: as the file says, or 1.
     pub metres: Option<f64>,
@@ -36,48 +36,48 @@ pub struct StructureSpec {
 /// The plants of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadStructure {
-    /// At least one, each sound and with an axis; where they stand is where the file has them.
+    /// At least one, each sound and with an axis; they stand where the file has them.
     pub plants: Vec<Plant>,
-    /// What the file told.
+    /// Counts of the file's entries.
     pub tally: StructureTally,
 }
 
-/// What became of the entries of a file: rows of a table, vertices of an MTG, elements of an OPF.
+/// Counts of the entries of a file: rows of a table, vertices of an MTG, elements of an OPF.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StructureTally {
-    /// Entries.
+    /// Number of entries.
     pub entries: u64,
-    /// Those of which something is in a plant.
+    /// Number of entries that are part of a plant.
     pub used: u64,
-    /// Places whose radius the file does not say: it follows from their neighbours.
+    /// Number of places without a radius in the file: it follows from their neighbours.
     pub radii_missing: u64,
-    /// The file says its unit of length.
+    /// The file gives its unit of length.
     pub unit_said: bool,
 }
 
-/// The structure of a plant could not be read.
+/// Error of reading the structure of a plant.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{place}: {fault}", format.name())]
 pub struct StructureError {
-    /// The format it was read as.
+    /// The format that the reader expected.
     pub format: StructureFormat,
     /// Where.
     pub place: Place,
-    /// What and what to do.
+    /// The fault, and what to do.
     pub fault: FileFault,
 }
 
 base::coded!(StructureError {} wraps { Self { place, fault, .. } => &Placed { place, fault }, Placed<'_> });
 
-/// What is read of a file at most.
+/// Most that is read of a file.
 struct Limits {
-    /// Bytes of the file.
+    /// Most bytes of the file.
     bytes: u64,
-    /// Nodes of all plants.
+    /// Most nodes of all plants.
     joints: usize,
-    /// Axes that nothing bears.
+    /// Most axes without a bearer.
     roots: usize,
-    /// How far anything lies from the origin, in units of the file: whatever is measured on Earth, in any unit.
+    /// Greatest distance from the origin, in units of the file: more than anything measured on Earth, in any unit.
     farthest: f64,
 }
 
@@ -90,7 +90,7 @@ fn fault_at(line: usize, what: impl Into<String>, advice: &'static str) -> Fault
     (line, FileFault::malformed(what, advice))
 }
 
-/// From the file into metres with +Y up.
+/// Conversion from the file to metres with +Y up.
 #[derive(Clone, Copy, Debug)]
 struct Inward {
     up: UpAxis,
@@ -99,7 +99,7 @@ struct Inward {
 }
 
 impl Inward {
-    /// `said`: the file's own unit in metres and up axis.
+    /// Combines the settings with `said`: the file's own unit in metres and up axis.
     fn new(spec: &StructureSpec, said: (Option<f64>, Option<UpAxis>)) -> Self {
         let metres = spec.metres.or(said.0).unwrap_or(1.0);
         let up = spec.up.or(said.1).unwrap_or(UpAxis::Z);
@@ -117,13 +117,13 @@ impl Inward {
         }
     }
 
-    /// A radius; not a number where there is none that can be one.
+    /// Converts a radius; not a number if there is no valid one.
     fn radius(&self, r: Option<f64>) -> f64 {
         r.filter(|r| *r >= 0.0 && *r < LIMITS.farthest).map_or(f64::NAN, |r| r * self.thickness)
     }
 }
 
-/// What comments of ours say: `lengths in metres` and `Z up`.
+/// Reads the unit and up axis from our own comments: `lengths in metres` and `Z up`.
 fn said_in(comment: &str) -> (Option<f64>, Option<UpAxis>) {
     let low = comment.to_ascii_lowercase();
     let Some((_, rest)) = low.split_once("lengths in ") else { return (None, None) };
@@ -136,24 +136,24 @@ fn said_in(comment: &str) -> (Option<f64>, Option<UpAxis>) {
     (unit, up)
 }
 
-/// Reads the structure of plants: axes with radii, and organs where the file has them.
+/// Reads the structure of plants: axes with radii, and organs if the file has them.
 ///
-/// - **SWC**: rows of `id type x y z radius parent`. What goes on where an axis forks is the thickest branch, or the one
-///   that reaches farthest; of our own files what they were made from.
-/// - **QSM**: a table of cylinders with a head (`TreeQSM`, rTwig, `SimpleForest`, ours) or without (the text of `TreeQSM`).
-///   Nodes get the radii with which each axis keeps its volume.
-/// - **MTG** (Godin and Caraglio 1998): every vertex with a position (`XX`, `YY`, `ZZ`) is a node. Organs of our own files
-///   get plain shapes of their length and area; chains of three points of digitised leaflets become leaves.
+/// - **SWC**: rows of `id type x y z radius parent`. At a fork, the axis continues with the thickest branch, or with
+///   the one that reaches farthest; files of our own continue with the original one.
+/// - **QSM**: a table of cylinders with a head (`TreeQSM`, rTwig, `SimpleForest`, ours) or without (the text of
+///   `TreeQSM`). Nodes get the radii with which each axis keeps its volume.
+/// - **MTG** (Godin and Caraglio 1998): every vertex with a position (`XX`, `YY`, `ZZ`) is a node. Organs of our own
+///   files get plain shapes of their length and area; chains of three points of digitised leaflets become leaves.
 /// - **OPF**: internodes and organs by their matrices; organs get plain shapes of their length and area.
 ///
-/// Guaranteed: [`Plant::validate`] finds nothing; the plants of our own files have the topology, lengths and radii that were
-/// written, to the printed digits (a QSM has neither roots nor stalks, an SWC no radii at the bases of borne axes). Not
-/// guaranteed: the outlines of organs, which only meshes have. Stems whose feet are near each other are one plant. Cost: n
-/// log n.
+/// Guaranteed: [`Plant::validate`] finds nothing; the plants of our own files have the topology, lengths and radii
+/// that were written, to the printed digits (a QSM has neither roots nor stalks, an SWC no radii at the bases of
+/// borne axes). Not guaranteed: the outlines of organs, which only meshes have. Stems whose feet are near each other
+/// are one plant. Cost: n log n.
 ///
 /// # Errors
-/// [`StructureError`] with the line: no axis, parents that are missing or lead round in a circle, places that are no
-/// numbers, too many entries.
+/// [`StructureError`] with the line: no axis, parents that are missing or form a circle, places that are not numbers,
+/// too many entries.
 ///
 /// ```
 /// use formats::{StructureFormat, StructureSpec, read_structure};
@@ -204,7 +204,8 @@ pub fn read_structure(
 }
 
 impl StructureFormat {
-    /// The format of a file that starts with these bytes (4,096 of them are plenty), if it says so: an SWC need not.
+    /// Returns the format of a file that starts with these bytes (4,096 of them are plenty), if they show it: an SWC
+    /// need not.
     ///
     /// ```
     /// use formats::StructureFormat;
@@ -234,7 +235,7 @@ impl StructureFormat {
     }
 }
 
-/// All of a file, as text.
+/// Reads a whole file as text.
 fn text(input: impl Read) -> Result<String, FileFault> {
     let mut bytes = Vec::new();
     input.take(LIMITS.bytes + 1).read_to_end(&mut bytes)?;
@@ -246,7 +247,7 @@ fn text(input: impl Read) -> Result<String, FileFault> {
         return Err(FileFault::Empty);
     }
     FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes))?;
-    // Old files of the field are in Latin-1 and do not say so.
+    // Old structure files are in Latin-1 and do not say so.
     if std::str::from_utf8(&bytes).is_err()
         && !bytes.starts_with(&[0xff, 0xfe])
         && !bytes.starts_with(&[0xfe, 0xff])
@@ -256,7 +257,7 @@ fn text(input: impl Read) -> Result<String, FileFault> {
     text_of(bytes)
 }
 
-/// Three numbers of a place, if they can be one.
+/// Returns a place from three numbers, if they are valid.
 fn place_of(numbers: [Option<f64>; 3]) -> Option<DVec3> {
     let [Some(x), Some(y), Some(z)] = numbers else { return None };
     let p = DVec3::new(x, y, z);

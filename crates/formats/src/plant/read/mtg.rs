@@ -11,22 +11,25 @@ use super::organs::{Found, Shapes};
 use super::{Fault, Inward, LIMITS, StructureSpec, fault_at, place_of, said_in};
 use crate::error::FileFault;
 
-/// Names that features may have, in small letters, the preferred first.
+/// Names of the features of coordinates, in lower case, the preferred first.
 const PLACE: [[&str; 3]; 3] = [["xx", "x", "coordx"], ["yy", "y", "coordy"], ["zz", "z", "coordz"]];
+/// Names of the feature of the diameter at a node.
 const DIAMETER: [&str; 4] = ["topdia", "diameter", "diam", "topdiameter"];
+/// Names of the feature of the diameter at an axis's base.
 const BASE_DIAMETER: [&str; 2] = ["botdia", "basdia"];
+/// Names of the feature of the radius.
 const RADIUS: [&str; 1] = ["radius"];
 
-/// Symbols of digitised roses and trees whose chains of lone points are the margins of blades: leaflets (F), bracts (L),
-/// stipules (Y), sepals (K).
+/// Symbols of digitised roses and trees whose chains of lone points are the margins of blades: leaflets (F), bracts
+/// (L), stipules (Y), sepals (K).
 const MARGINS: [&str; 4] = ["F", "L", "Y", "K"];
-/// So many points has a margin beside the one that it hangs on.
+/// Number of points of a margin, without its bearer.
 const MARGIN_POINTS: core::ops::RangeInclusive<usize> = 3..=4;
 
-/// The relation of a vertex to the one that it was declared from.
+/// Relation of a vertex to the one from which it is declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Edge {
-    /// `/`: it is a part of it.
+    /// `/`: it is a part of that vertex.
     Part,
     /// `<`
     Follows,
@@ -39,20 +42,20 @@ struct Vertex {
     symbol: usize,
     scale: i32,
     edge: Edge,
-    /// The vertex that it is declared from, if not as a part.
+    /// The vertex from which it is declared, if not as a part.
     hung_on: Option<usize>,
-    /// The vertex that it is a part of.
+    /// The vertex of which it is a part.
     whole: Option<usize>,
     row: Option<Row>,
     line: usize,
 }
 
-/// What the features of a vertex say.
+/// Features of a vertex.
 struct Row {
     place: Option<DVec3>,
     radius: Option<f64>,
     base_radius: Option<f64>,
-    /// Of our own files.
+    /// Features that only our own files have.
     own: Option<OwnRow>,
 }
 
@@ -80,7 +83,7 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
     let mut added = 0_u64;
     let mut add = |built: &mut Built, joint: Option<usize>, mut found: Found| {
         let at = joint.and_then(|j| built.nodes[j]);
-        // What hangs on nothing goes to the first plant.
+        // An organ without a bearer goes to the first plant.
         let (plant, node) = at.map_or((0, None), |(plant, node)| (plant, Some(node)));
         found.bearer = node;
         let Some(plant_of) = built.plants.get_mut(plant) else { return };
@@ -107,7 +110,7 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
     }
     built.tally.entries = graph.vertices.len() as u64;
     let nodes = built.nodes.iter().filter(|n| n.is_some()).count() as u64;
-    // Of a margin all points are in its blade.
+    // All points of a margin are used in its blade.
     let around: u64 = margins.iter().map(|m| m.points.len() as u64 - 1).sum();
     built.tally.used = (nodes + added + around).min(built.tally.entries);
     built.tally.unit_said = graph.said.0.is_some();
@@ -130,7 +133,7 @@ struct Graph {
     said: (Option<f64>, Option<UpAxis>),
 }
 
-/// The parts of such a file.
+/// Sections of such a file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Section {
     Head,
@@ -139,9 +142,9 @@ enum Section {
     Graph,
 }
 
-/// Which columns have what.
+/// Columns of the code and the features.
 struct Columns {
-    /// Columns of the code.
+    /// Number of columns of the code.
     codes: usize,
     names: Vec<String>,
 }
@@ -161,7 +164,7 @@ impl Columns {
     }
 }
 
-/// The columns of the features that are read.
+/// Columns of the features that are read.
 struct Features {
     place: [Option<usize>; 3],
     diameter: Option<usize>,
@@ -213,7 +216,7 @@ impl Graph {
         let mut section = Section::Head;
         let mut scales: BTreeMap<String, i32> = BTreeMap::new();
         let mut head: Option<(Columns, Features)> = None;
-        // The vertex that each column of the code ended with.
+        // The vertex with which each column of the code ended.
         let mut last: Vec<usize> = Vec::new();
         for (k, line) in text.lines().enumerate() {
             let bare = line.trim();
@@ -264,7 +267,7 @@ impl Graph {
         Ok(graph)
     }
 
-    /// A line of the graph: the path to one vertex, and its features.
+    /// Reads a line of the graph: the path to one vertex, and its features.
     fn line(
         &mut self,
         line: &str,
@@ -285,20 +288,20 @@ impl Graph {
             return Err(fault_at(number, format!("`{code}` stands below nothing"), advice));
         }
         let mut at = from.copied();
-        for step in Step::of(code.trim_start_matches('^'), number)? {
+        for step in Step::parse(code.trim_start_matches('^'), number)? {
             at = Some(self.step(&step, at, scales, number)?);
         }
         let Some(at) = at else { return Ok(()) };
-        // What goes on with nothing else only says more of that vertex.
+        // A line without a further step only gives more features of that vertex.
         self.vertices[at].row = Some(features.row(&cells));
-        // Between columns that are left out, the same vertex.
+        // Columns that were left out have the same vertex.
         last.truncate(column);
         last.resize(column, at);
         last.push(at);
         Ok(())
     }
 
-    /// The vertex that a step of a path leads to.
+    /// Returns the vertex to which a step of a path leads.
     fn step(
         &mut self,
         step: &Step<'_>,
@@ -307,7 +310,7 @@ impl Graph {
         line: usize,
     ) -> Result<usize, Fault> {
         let known = scales.get(step.symbol).copied();
-        // A class that is not declared is as fine as what it goes on with, or a part of it.
+        // A class that is not declared has the scale of its predecessor, or one finer if it is a part of it.
         let scale = known.unwrap_or_else(|| match (from, step.edge) {
             (None, _) => 0,
             (Some(f), Edge::Part) => self.vertices[f].scale + 1,
@@ -348,7 +351,8 @@ impl Graph {
         self.vertices[v].row.as_ref()?.place
     }
 
-    /// Chains of points that are margins: three or four of one symbol, the first borne, without thickness and bearing nothing.
+    /// Returns the chains of points that are margins: three or four of one symbol, the first borne, without thickness
+    /// and bearing nothing.
     fn margins(&self) -> Vec<Margin> {
         let mut next: Vec<Option<usize>> = vec![None; self.vertices.len()];
         let mut is_bearing = vec![false; self.vertices.len()];
@@ -378,7 +382,7 @@ impl Graph {
         out
     }
 
-    /// A blade through the points of its margin, from the place that it hangs on.
+    /// Returns a blade through the points of its margin, from the place of its bearer.
     fn blade(&self, margin: &Margin, root: Option<DVec3>, inward: &Inward) -> Option<Found> {
         let root = root?;
         let rim: Option<Vec<DVec3>> =
@@ -401,7 +405,7 @@ impl Graph {
         })
     }
 
-    /// An organ of our own files.
+    /// Returns an organ of our own files.
     fn own_organ(&self, v: usize, kind: OrganKind, inward: &Inward) -> Option<Found> {
         let row = self.vertices[v].row.as_ref()?;
         let own = row.own.as_ref()?;
@@ -418,7 +422,7 @@ impl Graph {
     }
 }
 
-/// The organ of a word of ours.
+/// Returns the kind of organ of one of our words.
 fn organ_of(word: &str) -> Option<OrganKind> {
     Some(match word {
         "leaf" => OrganKind::Leaf,
@@ -450,13 +454,13 @@ fn axis_of(word: &str) -> Option<AxisKind> {
     })
 }
 
-/// The joints of a graph, and where its vertices are.
+/// The joints of a graph, and the places of its vertices.
 struct Places {
     joints: Vec<Joint>,
-    /// The joint at which each vertex is, or on which it hangs without a place of its own, and how what comes next hangs
-    /// there.
+    /// The joint of each vertex, or, if it has no place of its own, the joint on which it hangs; and the link of its
+    /// successor there.
     joint_of: Vec<Option<(usize, Link)>>,
-    /// Organs of our own files, with the joints that bear them.
+    /// Organs of our own files: vertex, the joint that bears it, and kind.
     organs: Vec<(usize, Option<usize>, OrganKind)>,
 }
 
@@ -466,12 +470,12 @@ impl Places {
         let mut is_margin = vec![false; count];
         margins.iter().flat_map(|m| &m.points).for_each(|&v| is_margin[v] = true);
         let mut out = Self { joints: Vec::new(), joint_of: vec![None; count], organs: Vec::new() };
-        // Of each whole: whether a part of it has a place; its plant; the kind of its axes.
+        // For each vertex: whether a part of it has a place; its plant; the kind of its axes.
         let mut has_part = vec![false; count];
         let mut plant: Vec<usize> = (0..count).collect();
         let mut kind: Vec<Option<AxisKind>> = vec![None; count];
         for (v, vertex) in graph.vertices.iter().enumerate() {
-            // What comes before stands before in the file.
+            // A predecessor comes earlier in the file.
             if let Some(from) = vertex.hung_on.or(vertex.whole.filter(|&w| graph.vertices[w].scale > 0)) {
                 plant[v] = plant[from];
             }
@@ -516,14 +520,14 @@ impl Places {
     }
 }
 
-/// A step of a path, such as `+A1`; of a range (`/E1<<E5`) its first and its last.
+/// A step of a path, such as `+A1`; a range (`/E1<<E5`) has a first and a last step.
 struct Step<'a> {
     edge: Edge,
     symbol: &'a str,
 }
 
 impl<'a> Step<'a> {
-    fn of(code: &'a str, line: usize) -> Result<Vec<Self>, Fault> {
+    fn parse(code: &'a str, line: usize) -> Result<Vec<Self>, Fault> {
         let advice = "a code is made of /, < and +, each with a class and a number: /P1/A1+L2";
         let wrong = || fault_at(line, format!("`{code}` is no code of an entity"), advice);
         let mut out = Vec::new();

@@ -13,7 +13,7 @@ use super::organs::{Found, Shapes};
 use super::{Fault, Inward, LIMITS, StructureSpec, fault_at, place_of, said_in};
 use crate::error::FileFault;
 
-/// Nodes of XML: some thirty of them for each internode.
+/// Most nodes of XML: some thirty for each internode.
 const MOST_NODES: u32 = 40_000_000;
 
 /// Reads an OPF.
@@ -71,7 +71,8 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
     Ok(built)
 }
 
-/// Reference meshes by their numbers: the box around each, and the area of its triangles' projections on three planes.
+/// Reference meshes by their numbers: the bounding box of each, and the area of its triangles' projections on three
+/// planes.
 struct Meshes {
     meshes: BTreeMap<i64, Reference>,
     /// The mesh of each shape.
@@ -82,7 +83,7 @@ struct Meshes {
 struct Reference {
     low: DVec3,
     high: DVec3,
-    /// The sum of the vectors of its triangles' areas, each on the side of positive coordinates.
+    /// The sum of the area vectors of its triangles, with each component made positive.
     area: DVec3,
 }
 
@@ -145,22 +146,22 @@ impl Reference {
     }
 }
 
-/// Where an element of the tree is.
+/// Place of an element in the tree.
 #[derive(Clone, Copy, Default)]
 struct Place {
-    /// The cylinder that what comes next hangs on, and how.
+    /// The cylinder on which its successor hangs, and how.
     cylinder: Option<usize>,
     branches: bool,
 }
 
 struct Topology {
     cylinders: Vec<Cylinder>,
-    /// With the cylinder that bears each.
+    /// Organs, each with the cylinder that bears it.
     organs: Vec<(Option<usize>, Found)>,
     entries: u64,
 }
 
-/// What an element is, by its class.
+/// Returns the kind of organ of a class of elements.
 fn organ_of(class: &str) -> Option<OrganKind> {
     const WORDS: [(&str, OrganKind); 14] = [
         ("leaf", OrganKind::Leaf),
@@ -195,7 +196,7 @@ fn axis_of(name: &str) -> Option<AxisKind> {
 }
 
 impl Topology {
-    /// Walks through the tree in the order of the file; with rows of its own instead of recursion, as it may be deep.
+    /// Walks through the tree in the order of the file; with explicit rows instead of recursion, as it may be deep.
     fn read(
         &mut self,
         document: &Document<'_>,
@@ -208,11 +209,11 @@ impl Topology {
         };
         let mut places: BTreeMap<usize, Place> = BTreeMap::new();
         let mut kinds: BTreeMap<usize, AxisKind> = BTreeMap::new();
-        // Of an element: the last of its parts, or of what follows them.
+        // For each element: the last of its parts, or of the parts of its successor.
         let mut ends: BTreeMap<usize, usize> = BTreeMap::new();
         for node in document.descendants().filter(is_entry) {
             self.entries += 1;
-            // Its line is sought only for messages: that goes through the whole text.
+            // The line is searched only for messages, because that goes through the whole text.
             let at = node.range().start;
             if self.entries > LIMITS.joints as u64 {
                 let (what, advice) = ("the number of elements", "split the file into one for each plant");
@@ -250,7 +251,7 @@ impl Topology {
                 }
                 continue;
             }
-            // What has parts with a geometry is no piece of wood itself, such as the box around a plant.
+            // An element whose parts have a geometry is not a piece of wood itself, such as the box around a plant.
             let has_parts = node.children().any(|c| c.has_tag_name("decomp"));
             let Some(geometry) = child(node, "geometry").filter(|_| !has_parts) else { continue };
             let link = match (place.cylinder, place.branches) {
@@ -273,7 +274,7 @@ impl Topology {
             };
             self.cylinders.push(wood);
             let row = self.cylinders.len() - 1;
-            // It ends what it is a part of, too.
+            // The cylinder ends the elements of which it is a part, too.
             let mut up = Some(node);
             while let Some(n) = up {
                 ends.insert(n.id().get_usize(), row);
@@ -288,7 +289,7 @@ impl Topology {
     }
 }
 
-/// The columns of a matrix and its origin, in the axes and unit of the file.
+/// Returns the columns of a matrix and its origin, in the axes and unit of the file.
 fn matrix(geometry: Node<'_, '_>) -> Option<[DVec3; 4]> {
     let text = child(geometry, "mat")?.text()?;
     let m: Vec<f64> = numbers(text).collect();
@@ -303,7 +304,7 @@ fn mesh_of<'a>(geometry: Node<'_, '_>, meshes: &'a Meshes) -> Option<&'a Referen
     meshes.of_shape(whole(child(geometry, "shapeIndex").and_then(|s| s.text()))?)
 }
 
-/// An internode: its mesh lies along x.
+/// Returns an internode: its mesh lies along x.
 fn cylinder(geometry: Node<'_, '_>, meshes: &Meshes, inward: &Inward) -> Option<Cylinder> {
     let [x, .., at] = matrix(geometry)?;
     let mesh = mesh_of(geometry, meshes)?;
@@ -327,7 +328,7 @@ fn cylinder(geometry: Node<'_, '_>, meshes: &Meshes, inward: &Inward) -> Option<
     })
 }
 
-/// An organ: by its attributes, or by its mesh. Meshes of ours lie along y, others along x.
+/// Returns an organ by its attributes, or by its mesh. Our own meshes lie along y, others along x.
 fn organ(
     node: Node<'_, '_>,
     kind: OrganKind,
@@ -341,11 +342,11 @@ fn organ(
     let mesh = mesh_of(geometry, meshes)?;
     let said = |name| -> Option<f64> { child(node, name)?.text()?.trim().parse().ok() };
     let (along, reach, normal) = if is_own { (y, mesh.high.y, z) } else { (x, mesh.high.x, z) };
-    // How a matrix changes areas: of each plane by the vector product of what spans it.
+    // The matrix scales the area in each plane by the length of the cross product of the two columns that span it.
     let planes = [y.cross(z), z.cross(x), x.cross(y)].map(DVec3::length);
     let area = mesh.area.dot(DVec3::from_array(planes)) * inward.metres * inward.metres;
     let area = said("Area").map(|a| a * inward.metres * inward.metres).filter(|_| is_own).unwrap_or(area);
-    // Bodies of ours have no length.
+    // Our own bodies have no length.
     let long = if is_own { said("Length") } else { Some(along.length() * reach) };
     Some(Found {
         kind,

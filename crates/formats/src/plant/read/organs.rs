@@ -1,4 +1,4 @@
-//! Organs of a file by their length and area -> shapes.
+//! Organs of a file, given by their length and area -> shapes.
 
 use std::collections::BTreeMap;
 
@@ -6,31 +6,31 @@ use base::ops;
 use glam::{DVec2, DVec3};
 use plant::{Blade, BladeForm, Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, ShapeId};
 
-/// An organ as a file has it.
+/// An organ of a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     pub(super) kind: OrganKind,
     pub(super) bearer: Option<NodeId>,
     pub(super) frame: Frame,
-    /// From root to tip, metres; none for bodies.
+    /// Length from root to tip, metres; none for bodies.
     pub(super) length_m: Option<f64>,
-    /// One side, square metres; none: as usual for its length.
+    /// Area of one side, square metres; none: usual for its length.
     pub(super) area_m2: Option<f64>,
-    /// Where it stands in the file.
+    /// Its position in the file.
     pub(super) key: u64,
 }
 
-/// Shapes whose proportions differ by less are one: 2 %.
+/// Shapes whose proportions differ by less than this share are the same.
 const ALIKE: f64 = 0.02;
 
-/// Adds organs to a plant, of which those of like proportions share a shape.
+/// Adds organs to a plant; organs of similar proportions share a shape.
 #[derive(Default)]
 pub(super) struct Shapes {
     known: BTreeMap<(OrganKind, i64), (ShapeId, f64)>,
 }
 
 impl Shapes {
-    /// Whether the organ was added: one without a size is not.
+    /// Adds an organ and returns whether it did: it skips one without a size.
     pub(super) fn add(&mut self, plant: &mut Plant, found: &Found) -> bool {
         let sound = |x: Option<f64>| x.filter(|x| x.is_finite() && *x > 0.0);
         let (length, area) = (sound(found.length_m), sound(found.area_m2));
@@ -48,7 +48,7 @@ impl Shapes {
         let entry = self.known.entry((found.kind, step));
         let (shape, unit) = *entry.or_insert_with(|| {
             let shape = shape(found.kind, (!proportion.is_nan()).then_some(proportion));
-            // Of bodies the area is exact, of others the length.
+            // For bodies the area is exact, for other organs the length.
             let unit =
                 if proportion.is_nan() { shape.one_side_m2().sqrt() } else { shape.length().unwrap_or(1.0) };
             (plant.add_shape(shape), unit)
@@ -68,7 +68,7 @@ impl Shapes {
     }
 }
 
-/// Area over the square of the length.
+/// Returns the usual ratio of the area to the square of the length.
 fn usual(kind: OrganKind) -> f64 {
     match kind {
         OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn | OrganKind::Pedicel => 0.1,
@@ -76,7 +76,7 @@ fn usual(kind: OrganKind) -> f64 {
     }
 }
 
-/// A shape of length 1 with that area, or a round body.
+/// Returns a shape of length 1 with this area, or a round body.
 fn shape(kind: OrganKind, proportion: Option<f64>) -> Shape {
     match (kind, proportion) {
         (OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn | OrganKind::Pedicel, proportion) => {
@@ -89,7 +89,7 @@ fn shape(kind: OrganKind, proportion: Option<f64>) -> Shape {
     }
 }
 
-/// A ball of radius 0.5 that stands on its root.
+/// Returns a ball of radius 0.5 that stands on its root.
 fn ball() -> Vec<DVec2> {
     const STEPS: u32 = 12;
     let point = |k: u32| {
@@ -99,7 +99,7 @@ fn ball() -> Vec<DVec2> {
     (0..=STEPS).map(point).collect()
 }
 
-/// An ovate blade of length 1 with that area: flat, as nothing says how it is bent.
+/// Returns an ovate blade of length 1 with this area: flat, as the file does not describe its curvature.
 fn leaf(area: f64) -> Blade {
     let mut blade = BladeForm::Ovate.blade();
     blade.relief = plant::Relief::default();

@@ -11,7 +11,7 @@ use super::joints::{Built, Link, build};
 use super::{Fault, Inward, LIMITS, StructureSpec, fault_at, place_of};
 use crate::error::FileFault;
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Column {
     Radius,
@@ -29,7 +29,7 @@ enum Column {
     Other,
 }
 
-/// The columns of the text that `TreeQSM` saves without a head.
+/// Columns of the text that `TreeQSM` saves without a head.
 const BARE: [Column; 14] = [
     Column::Radius,
     Column::Length,
@@ -47,7 +47,7 @@ const BARE: [Column; 14] = [
     Column::Other,
 ];
 
-/// Between which the cells of a line stand.
+/// Separator of the cells of a line.
 #[derive(Clone, Copy, Debug)]
 enum Separator {
     Char(char),
@@ -55,7 +55,7 @@ enum Separator {
 }
 
 impl Separator {
-    fn of(line: &str) -> Self {
+    fn detect(line: &str) -> Self {
         let found = [';', '\t', ','].into_iter().find(|&c| line.contains(c));
         found.map_or(Self::Space, Self::Char)
     }
@@ -67,7 +67,7 @@ impl Separator {
         }
     }
 
-    /// A number; with a decimal comma where commas separate nothing.
+    /// Parses a number; it may have a decimal comma if commas do not separate cells.
     fn number(self, text: &str) -> Option<f64> {
         let point = !matches!(self, Self::Char(',')) && !text.contains('.') && text.contains(',');
         let parsed = if point { text.replacen(',', ".", 1).parse() } else { text.parse() };
@@ -75,10 +75,10 @@ impl Separator {
     }
 }
 
-/// The columns of a head; those that stand for three coordinates are three.
+/// Returns the columns of a head; one that stands for three coordinates gives three.
 fn columns(line: &str) -> Vec<Column> {
     let mut out = Vec::new();
-    for cell in Separator::of(line).split(line) {
+    for cell in Separator::detect(line).split(line) {
         let bare = cell.split(['(', '[']).next().unwrap_or("");
         let word: String = bare.chars().filter(char::is_ascii_alphanumeric).collect();
         match &*word.to_ascii_lowercase() {
@@ -86,7 +86,7 @@ fn columns(line: &str) -> Vec<Column> {
             "axisdirection" => out.extend([0, 1, 2].map(Column::Axis)),
             word => {
                 let column = column(word);
-                // What R names otherwise is there again.
+                // R repeats some columns under other names.
                 let again = column != Column::Other && out.contains(&column);
                 out.push(if again { Column::Other } else { column });
             }
@@ -118,20 +118,20 @@ fn column(word: &str) -> Column {
     }
 }
 
-/// Whether a line is the head of such a table.
+/// Returns whether a line is the head of such a table.
 pub(super) fn is_head(line: &str) -> bool {
     let columns = columns(line);
     [Column::Radius, Column::Start(0), Column::Parent].iter().all(|c| columns.contains(c))
 }
 
-/// Whether a line is of a table without a head.
+/// Returns whether a line belongs to a table without a head.
 fn is_bare(line: &str) -> bool {
-    let separator = Separator::of(line);
+    let separator = Separator::detect(line);
     let cells = separator.split(line);
     cells.len() >= BARE.len() && cells.iter().all(|c| separator.number(c).is_some())
 }
 
-/// A row as it stands in the file.
+/// A row of the file.
 struct Row {
     id: i64,
     parent: Option<i64>,
@@ -150,11 +150,14 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
     let mut lines = lines.filter(|(_, l)| !l.is_empty() && !l.starts_with('#'));
     let (first_line, first) = lines.next().ok_or((0, FileFault::Empty))?;
     let has_head = !is_bare(first);
-    let table =
-        Table::new(if has_head { columns(first) } else { BARE.to_vec() }, Separator::of(first), first_line)?;
+    let table = Table::new(
+        if has_head { columns(first) } else { BARE.to_vec() },
+        Separator::detect(first),
+        first_line,
+    )?;
     let (mut rows, mut left_out) = (Vec::new(), 0_u64);
     if has_head {
-        // The head is no row.
+        // The head is not a row.
     } else {
         rows.push(table.row(first, first_line, 0)?);
         report.warn(
@@ -192,7 +195,7 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
 }
 
 struct Table {
-    /// Where the columns are that are read.
+    /// Positions of the columns that are read.
     places: Vec<(Column, usize)>,
     separator: Separator,
     has_id: bool,
@@ -245,7 +248,7 @@ impl Table {
                 long.ok_or_else(|| fault_at(number, "the length of the cylinder is no length", advice))?;
             start + axis.normalize_or_zero() * long
         };
-        // Row names of R, and `NA` for none.
+        // Ids are row names of R, and `NA` stands for none.
         #[expect(clippy::cast_possible_truncation, reason = "whole and small enough")]
         let whole = |c: Column| of(c).filter(|x| x.abs() < 9e15 && x.fract() == 0.0).map(|x| x as i64);
         let id = if self.has_id {
@@ -277,7 +280,7 @@ fn cylinders(table: &Table, rows: &[Row], inward: &Inward) -> Result<Vec<Cylinde
             return Err(fault_at(row.line, what, "each cylinder has a number of its own"));
         }
     }
-    // Rows count from 1 and 0 is none, but from 0 where -1 is none.
+    // Rows count from 1 with 0 for none; if -1 stands for none, they count from 0.
     let from_zero = !table.has_id && rows.iter().any(|r| r.parent == Some(-1));
     let shift = i64::from(from_zero);
     let is_none = |id: i64| id < 0 || (id == 0 && !from_zero && !places.contains_key(&0));

@@ -10,7 +10,7 @@ use super::{Fault, Inward, LIMITS, StructureSpec, fault_at, place_of, said_in};
 use crate::error::FileFault;
 use crate::plant::swc::{FIRST_OWN, TIPS, TYPES};
 
-/// A row as it stands in the file.
+/// A row of the file.
 struct Row {
     id: i64,
     kind: i64,
@@ -24,7 +24,7 @@ struct Row {
 pub(super) fn read(text: &str, spec: &StructureSpec) -> Result<Built, Fault> {
     let mut rows: Vec<Row> = Vec::new();
     let mut said = (None, None);
-    // What our own files say beyond the format.
+    // Facts that only the comments of our own files give.
     let (mut is_own, mut tips) = (false, Vec::new());
     for (k, line) in text.lines().enumerate() {
         let line = line.trim();
