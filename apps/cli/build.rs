@@ -1,6 +1,7 @@
 //! Puts the built page of the Studio into the program, where it is built: `burgeon studio` then needs no files.
 //!
-//! `cargo xtask build-web` makes the page, and has this run again. Without the page the program is built all the same.
+//! `cargo xtask build-web` makes the page and triggers this script again. Without the page, the program is built all
+//! the same.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,14 +17,15 @@ fn main() -> io::Result<()> {
         collect(&page.canonicalize()?, "", &mut files)?;
     }
     files.sort();
-    // A file that is there packed as well goes in so, and is unpacked for the few that cannot do it themselves.
+    // If a packed copy of a file exists, it goes into the program instead, and is unpacked for the few browsers that
+    // cannot do it.
     let packed: Vec<String> =
         files.iter().filter_map(|(name, _)| name.strip_suffix(".br")).map(str::to_owned).collect();
     files.retain(|(name, _)| !packed.contains(name));
     let out = folder("OUT_DIR")?;
     let mut source = String::from("&[\n");
     for (k, (name, path)) in files.iter().enumerate() {
-        // A copy: the page may be built anew before the compiler comes here.
+        // A copy: the page may be rebuilt before the compiler reads it.
         let copy = out.join(format!("page-{k}"));
         fs::copy(path, &copy)?;
         let _ = writeln!(source, "    ({name:?}, include_bytes!({copy:?}) as &[u8]),");
@@ -32,7 +34,7 @@ fn main() -> io::Result<()> {
     fs::write(out.join("page.rs"), source)
 }
 
-/// The files of a folder: their names in addresses, and where they lie.
+/// Collects the files of a folder: their names in addresses, and their paths.
 fn collect(folder: &Path, before: &str, files: &mut Vec<(String, PathBuf)>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;

@@ -1,4 +1,4 @@
-//! Where Python's own symbols come from: the interpreter that loads the library.
+//! Links without Python's own symbols: the interpreter that loads the library provides them.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -6,10 +6,10 @@ use crate::toolchain::shown;
 use crate::{studio, web};
 use xtask::shell::{Outcome, built_burgeon, command, finish, output, prepare, repository, say, target_dir};
 
-/// The shells that packages have completions for, and what their files are called.
+/// Shells for which packages have completions, and the names of their files.
 const SHELLS: [(&str, &str); 3] = [("bash", "burgeon.bash"), ("zsh", "_burgeon"), ("fish", "burgeon.fish")];
 
-/// What lies in the archive as it lies in the repository: where from, and its name there.
+/// Files of the archive that are copied from the repository: their path, and their name there.
 const FILES: [(&str, &str); 5] = [
     ("LICENSE-APACHE", "LICENSE-APACHE"),
     ("LICENSE-MIT", "LICENSE-MIT"),
@@ -19,9 +19,10 @@ const FILES: [(&str, &str); 5] = [
 ];
 const README: &str = "README.md";
 
-/// `target/archives/burgeon-VERSION-SYSTEM.tar.gz`, as `cargo binstall` expects it. Unpacks it and does what its README says.
+/// Builds `target/archives/burgeon-VERSION-SYSTEM.tar.gz`, as `cargo binstall` expects it. Unpacks it and follows its
+/// README.
 pub(crate) fn run() -> Outcome {
-    // The build script of the command takes the built page in.
+    // The build script of the command includes the built page.
     studio::build(&web::setup()?, true)?;
     let burgeon = built_burgeon()?;
     let system = output(prepare("rustc", &["-vV"]))?;
@@ -52,7 +53,8 @@ pub(crate) fn run() -> Outcome {
     Ok(())
 }
 
-/// Unpacks the archive into a folder of its own and runs the lines of its README that make something, as a newcomer would.
+/// Unpacks the archive into a folder of its own and runs the lines of its README that make something, as a newcomer
+/// would.
 fn follow_readme(out: &Path, archive: &str, name: &str) -> Outcome {
     let away = out.join("unpacked");
     let _ = std::fs::remove_dir_all(&away);
@@ -77,7 +79,8 @@ fn follow_readme(out: &Path, archive: &str, name: &str) -> Outcome {
     std::fs::remove_dir_all(&away).map_err(|e| format!("{}: {e}", shown(&away)))
 }
 
-/// What follows `./burgeon` in each line of a README that ends by itself: the Studio is served until somebody ends it.
+/// Returns the text after `./burgeon` in each line of a README that ends by itself: the Studio runs until somebody ends
+/// it.
 fn makers(readme: &str) -> Vec<&str> {
     readme
         .lines()

@@ -5,10 +5,10 @@ use crate::toolchain::shown;
 use std::path::{Path, PathBuf};
 use xtask::shell::{Outcome, finish, output, prepare, repository, say, target_dir};
 
-/// What the tests import: a gigabyte, and for one version of Python only, so that it is no part of `test`.
+/// Imports of the tests: a gigabyte, and for one version of Python only, so that it is no part of `test`.
 const TEST: &[&str] = &["bpy>=4.2", "numpy", "pytest"];
 
-/// Builds the extension for people, for this system: the wheel optimised, into `target/blender`.
+/// Builds the extension for users, for this system: the wheel optimised, into `target/blender`.
 pub(crate) fn pack() -> Outcome {
     let python = environment()?.ok_or("Python 3.9 or newer is missing: install it with its module venv")?;
     install(&python, BUILD)?;
@@ -20,7 +20,7 @@ pub(crate) fn pack() -> Outcome {
     Ok(())
 }
 
-/// The extension with this wheel in it.
+/// Packs the extension with this wheel.
 fn packed(python: &Path, wheel: &Path) -> Outcome<PathBuf> {
     let folder = target_dir().join("blender");
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", shown(&folder)))?;
@@ -38,7 +38,7 @@ pub(crate) fn test() -> Outcome {
     lint(&python)?;
     let folder = target_dir().join("blender-python");
     let own = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Looked for, not imported: Blender takes long to start.
+    // Found without importing: Blender takes long to start.
     let there = "import importlib.util, sys; sys.exit(any(importlib.util.find_spec(n) is None for n in ('bpy', 'pytest')))";
     if output(prepare(&own, &["-c", there])).is_err() {
         let mut c = prepare(&python, &["-m", "venv", "--clear"]);

@@ -1,7 +1,7 @@
-//! Digests of everything that the repository can make: a change of any plant is meant, and says why.
+//! Digests of all results in the repository: a change of any plant must be intended and explained.
 //!
-//! `cargo xtask test` compares them with `fixtures/digests.json`; `cargo xtask bless "why"` writes that file anew and the
-//! reason into the changelog.
+//! `cargo xtask test` compares them with `fixtures/digests.json`; `cargo xtask bless "why"` rewrites that file and adds
+//! the reason to the changelog.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,10 @@ use serde_json::Value;
 use crate::native;
 use xtask::shell::{Outcome, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir};
 
-/// Digest (and for trees the size of their meshes) by what was made.
+/// Digest (and for trees the size of their meshes) of each result.
 type Digests = BTreeMap<String, String>;
 
-/// Names of changed digests that a message lists.
+/// Most names of changed digests in a message.
 const LISTED: usize = 20;
 
 fn file() -> PathBuf {
@@ -27,8 +27,8 @@ fn json(path: &Path) -> Outcome<Value> {
     serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// The digests of drawings, by the report that names them, of leaves, flowers and trees, by their file, and of projects
-/// and edits by hand, which are made here.
+/// Returns the digests of drawings, from the report that names them, of leaves, flowers and trees, from their file, and
+/// of projects and hand edits, which are made here.
 fn measured(drawings: &Path, organs: &Path, out: &Path) -> Outcome<Digests> {
     let mut all = Digests::new();
     let digest = |value: &Value| value.as_str().unwrap_or_default().to_owned();
@@ -70,7 +70,7 @@ fn measured(drawings: &Path, organs: &Path, out: &Path) -> Outcome<Digests> {
     Ok(all)
 }
 
-/// Compares what was just made with what is expected.
+/// Compares the new digests with the expected ones.
 pub(crate) fn check(drawings: &Path, organs: &Path, out: &Path) -> Outcome {
     let now = measured(drawings, organs, out)?;
     let before = expected()?;
@@ -95,7 +95,7 @@ fn expected() -> Outcome<Digests> {
     serde_json::from_value(json(&file())?).map_err(|e| format!("{}: {e}", file().display()))
 }
 
-/// Names of what is new, gone or different.
+/// Returns the names of new, missing and changed digests.
 fn changes(before: &Digests, now: &Digests) -> Vec<String> {
     let mut names: Vec<&String> = before.keys().chain(now.keys()).collect();
     names.sort();
@@ -111,7 +111,7 @@ fn listed(names: &[String], between: &str) -> String {
     words.join(between)
 }
 
-/// `cargo xtask bless WHY`: what is made now is expected from now on.
+/// `cargo xtask bless WHY`: makes the present results the expected ones.
 pub(crate) fn bless(why: &[String]) -> Outcome {
     let why = why.join(" ");
     let why = why.trim();

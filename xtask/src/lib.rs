@@ -1,3 +1,3 @@
-//! What the programs of this repository's chores share.
+//! Shared parts of the programs for this repository's chores.
 
 pub mod shell;

@@ -15,7 +15,7 @@ mod web;
 use std::process::ExitCode;
 
 use minutes::Minutes;
-use xtask::shell::{self, Outcome, beside, cargo, repository, say};
+use xtask::shell::{self, Outcome, cargo, in_parallel, repository, say};
 
 const HELP: &str = "\
 cargo xtask COMMAND
@@ -62,7 +62,7 @@ cargo xtask COMMAND
   setup          installs the wasm32 target and the WASM tools only
 ";
 
-/// Chores of the crate `lab`, which only they compile.
+/// Chores of the crate `lab`, which is compiled only for them.
 const LABORATORY: [&str; 11] = [
     "gallery",
     "species",
@@ -117,20 +117,20 @@ fn main() -> ExitCode {
     }
 }
 
-/// A chore of the laboratory, optimised: most of them draw and read thousands of drawings.
+/// Runs a chore of the laboratory, optimised: most of them draw and read thousands of drawings.
 fn laboratory(args: &[String]) -> Outcome {
     let lab = ["run", "--release", "--quiet", "--package", "burgeon-lab", "--"];
     cargo(&lab.into_iter().chain(args.iter().map(String::as_str)).collect::<Vec<_>>())
 }
 
-/// A check of the sources, by the program that can parse them. Named as a program and not as a package it stands on what
-/// the tests have compiled.
+/// Runs a check of the sources, by the program that can parse them. Named as a program and not as a package, it uses
+/// what the tests have compiled.
 fn checks(args: &[String]) -> Outcome {
     let program = ["run", "--quiet", "--bin", "xtask-checks", "--"];
     cargo(&program.into_iter().chain(args.iter().map(String::as_str)).collect::<Vec<_>>())
 }
 
-/// The main job on the sample sketch, as a newcomer would do it.
+/// Does the main job on the sample sketch, as a newcomer would.
 fn run(args: &[String]) -> Outcome {
     let root = repository();
     let burgeon = shell::quick_burgeon()?;
@@ -167,7 +167,7 @@ Next: draw your own (docs/drawings.md) and give it to the same command, target/q
     studio::open(&web::setup()?, &[sample])
 }
 
-/// The tests that compare schemas and TypeScript types write them, too.
+/// Runs the tests that compare schemas and TypeScript types, and lets them write these.
 fn types() -> Outcome {
     let mut c = shell::prepare(
         shell::cargo_path(),
@@ -183,10 +183,10 @@ fn test_studio(tools: &web::Tools) -> Outcome {
     studio::kills(Share::All)
 }
 
-/// How much the tests ask where a part of it says nearly as much as all.
+/// Extent of the tests where a part is nearly as good a check as all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Share {
-    /// A part, by a rule that stands where it is taken: in each run.
+    /// A part, by a rule given where it is applied: in each run.
     Some,
     /// All: each night, and before a release.
     All,
@@ -200,34 +200,38 @@ fn share(args: &[String]) -> Outcome<Share> {
     }
 }
 
-/// Moments at which each command is interrupted where all is asked for.
+/// Number of moments at which each command is interrupted when all is tested.
 const ALL_INTERRUPTS: &str = "20";
 
-/// Everything that must be green. What waits much runs beside what computes.
+/// Runs everything that must be green. Steps that mostly wait run in parallel with those that compute.
 fn test(share: Share) -> Outcome {
     let mut minutes = Minutes::default();
-    let tools = minutes.of("tools", web::setup)?;
-    minutes.of("tests and programs compiled", || cargo(&["test", "--workspace", "--no-run", "--quiet"]))?;
-    minutes.of("native tests, cores compiled", || beside(|| test_native(share), || web::compile(&tools)))?;
-    minutes.of("digests, WASM in Node, validator", || web::test(&tools, true, share))?;
-    minutes.of("npm", || npm::test(&tools))?;
-    minutes.of("the page in Node", || studio::check(&tools))?;
-    minutes.of("Python, kills of pages, journeys", || {
+    let tools = minutes.measure("tools", web::setup)?;
+    minutes
+        .measure("tests and programs compiled", || cargo(&["test", "--workspace", "--no-run", "--quiet"]))?;
+    minutes.measure("native tests, cores compiled", || {
+        in_parallel(|| test_native(share), || web::compile(&tools))
+    })?;
+    minutes.measure("digests, WASM in Node, validator", || web::test(&tools, true, share))?;
+    minutes.measure("npm", || npm::test(&tools))?;
+    minutes.measure("the page in Node", || studio::check(&tools))?;
+    minutes.measure("Python, kills of pages, journeys", || {
         let python_and_kills = || python::test(true).and_then(|()| studio::kills(share));
-        beside(python_and_kills, || studio::journeys(true, share))
+        in_parallel(python_and_kills, || studio::journeys(true, share))
     })?;
     if share == Share::All {
-        minutes.of("fuzz targets", fuzz_targets)?;
-        minutes.of("the npm package", || npm::pack(&tools))?;
-        minutes.of("the wheel", python::wheel)?;
-        minutes.of("the archive", archive::run)?;
-        minutes.of("the extension for Blender", blender::pack)?;
+        minutes.measure("fuzz targets", fuzz_targets)?;
+        minutes.measure("the npm package", || npm::pack(&tools))?;
+        minutes.measure("the wheel", python::wheel)?;
+        minutes.measure("the archive", archive::run)?;
+        minutes.measure("the extension for Blender", blender::pack)?;
     }
     minutes.tell();
     Ok(())
 }
 
-/// Whether the fuzz targets, which are a workspace of their own, compile: `cargo fuzz` and its compiler are not needed for that.
+/// Checks that the fuzz targets, which are a workspace of their own, compile: this needs neither `cargo fuzz` nor its
+/// compiler.
 fn fuzz_targets() -> Outcome {
     let target = shell::target_dir().join("fuzz");
     let mut c = shell::prepare(
@@ -245,7 +249,7 @@ fn test_native(share: Share) -> Outcome {
         c.envs([("BURGEON_TESTS", "all"), ("BURGEON_INTERRUPTS", ALL_INTERRUPTS)]);
     }
     shell::finish(c)?;
-    // The library as programs of their own use it: built with the tests.
+    // The library as users' programs call it: built with the tests.
     for (example, args) in [("inventory", &[][..]), ("stand", &["hazel", "--seeds", "2", "--ages", "5,10"])] {
         say(&format!("$ {example} {}", args.join(" ")));
         shell::command(shell::example(example), args)?;

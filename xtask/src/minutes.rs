@@ -1,24 +1,24 @@
-//! What each step takes of the processor and of the clock.
+//! Time of each step, on the processor and by the clock.
 
 use std::time::Instant;
 
 use xtask::shell::{Outcome, say};
 
-/// Units of time of the processor in a second, as Linux tells them to programs (`USER_HZ`, the same on all machines).
+/// Units of processor time in a second, as Linux reports them (`USER_HZ`, the same on all machines).
 const TICKS: f64 = 100.0;
-/// Where a process's line in `/proc` has the time of its children that have ended, by themselves and in the system: fields
-/// after the name, which ends with a bracket.
+/// Fields of a process's line in `/proc` with the time of its children that have ended, in user and in system mode:
+/// counted after the name, which ends with a bracket.
 const OF_CHILDREN: [usize; 2] = [13, 14];
 
-/// The steps so far.
+/// Steps so far.
 #[derive(Debug, Default)]
 pub(crate) struct Minutes {
     rows: Vec<(&'static str, f64, Option<f64>)>,
 }
 
 impl Minutes {
-    /// Takes a step.
-    pub(crate) fn of<T>(&mut self, step: &'static str, take: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+    /// Runs a step and measures it.
+    pub(crate) fn measure<T>(&mut self, step: &'static str, take: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
         let (started, before) = (Instant::now(), processor());
         let outcome = take();
         let spent = processor().zip(before).map(|(after, before)| after - before);
@@ -26,7 +26,7 @@ impl Minutes {
         outcome
     }
 
-    /// Shows them.
+    /// Prints the steps.
     pub(crate) fn tell(&self) {
         say("\nminutes of  the processor  the clock");
         for (step, wall, spent) in &self.rows {
@@ -36,14 +36,14 @@ impl Minutes {
     }
 }
 
-/// Seconds of the processor that the programs have taken that this one called and that have ended; none where the system
-/// does not tell.
+/// Returns the processor time in seconds of ended programs that this one called; `None` where the system does not
+/// report it.
 fn processor() -> Option<f64> {
     let line = std::fs::read_to_string("/proc/self/stat").ok()?;
     children(&line)
 }
 
-/// The same in the line of a process.
+/// Returns the same from the line of a process.
 fn children(line: &str) -> Option<f64> {
     let (_, fields) = line.rsplit_once(')')?;
     let fields: Vec<&str> = fields.split_whitespace().collect();

@@ -1,19 +1,19 @@
-//! Everything that the repository makes, made by the native program on four threads, and of it a share on one: its digests.
+//! All results of the repository, made by the native program on four threads, and a part of them on one: their digests.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::Share;
 use crate::toolchain::shown;
-use xtask::shell::{Outcome, beside, burgeon, finish, prepare, repository, say};
+use xtask::shell::{Outcome, burgeon, finish, in_parallel, prepare, repository, say};
 
-/// The report of all drawings and the digests of leaves, flowers and trees, by the native program alone.
+/// Returns the report of all drawings and the digests of leaves, flowers and trees, by the native program alone.
 pub(crate) fn all(out: &Path) -> Outcome<(PathBuf, PathBuf)> {
     let drawings = models(&drawings()?, &out.join("native"), Share::All)?;
     Ok((drawings, organs(out, Share::All)?.0))
 }
 
-/// Every drawing among the fixtures, in order of name.
+/// Returns every drawing among the fixtures, in order of name.
 pub(crate) fn drawings() -> Outcome<Vec<PathBuf>> {
     let mut folders = vec![repository().join("fixtures/sketches")];
     let mut drawings = Vec::new();
@@ -32,10 +32,10 @@ pub(crate) fn drawings() -> Outcome<Vec<PathBuf>> {
     if drawings.is_empty() { Err("no drawings under fixtures/sketches".into()) } else { Ok(drawings) }
 }
 
-/// Shapes of each flower in the comparison.
+/// Number of shapes of each flower in the comparison.
 pub(crate) const FRAMES: &str = "5";
 
-/// The points of a bent leaf of `length` mm, in millimetres.
+/// Writes the points of a bent leaf of `length` mm, in millimetres.
 fn made_scan(length: f64) -> String {
     let mut text = String::new();
     for i in 0..60 {
@@ -49,7 +49,8 @@ fn made_scan(length: f64) -> String {
     text
 }
 
-/// Files for every kind of leaf and organ: a pinnate net of veins, palmate and parallel veins, a scan, three stages.
+/// Writes files for every kind of leaf and organ: a pinnate net of veins, palmate and parallel veins, a scan, three
+/// stages.
 fn made_organs(out: &Path, burgeon: &Path) -> Outcome<Vec<PathBuf>> {
     let mut nodes: Vec<[f64; 3]> =
         (0..=40).map(|i| [200.0, 500.0 - 10.0 * f64::from(i), 8.0 - 0.15 * f64::from(i)]).collect();
@@ -100,11 +101,11 @@ fn made_organs(out: &Path, burgeon: &Path) -> Outcome<Vec<PathBuf>> {
 /// Fineness of the trees' surfaces in the comparison.
 pub(crate) const DETAIL: &str = "0.1";
 
-/// Of what is made on four threads, one in so many is made on one thread, too, in order of name from the first on, unless
-/// all is asked for. Whether it is what it was, and the same in WASM, is asked of all.
+/// Of the results made on four threads, one of this many is also made on one thread, in order of name from the first
+/// on, unless all is tested. All are compared with the expected digests, and with WASM.
 const ON_ONE_THREAD: usize = 4;
 
-/// Every `ON_ONE_THREAD`th, or all.
+/// Returns every `ON_ONE_THREAD`th, or all.
 fn sample<T: Clone>(all: &[T], share: Share) -> Vec<T> {
     let step = match share {
         Share::All => 1,
@@ -113,8 +114,8 @@ fn sample<T: Clone>(all: &[T], share: Share) -> Vec<T> {
     all.iter().step_by(step).cloned().collect()
 }
 
-/// The digests of every kind of leaf, every flower and the tree of every preset, by the native program on four threads, and
-/// of a share of them on one; returns their file and the files that they were made of.
+/// Makes the digests of every kind of leaf, every flower and the tree of every preset, by the native program on four
+/// threads, and of a part of them on one; returns their file and their input files.
 pub(crate) fn organs(out: &Path, share: Share) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let burgeon = burgeon("debug");
     let mut files: Vec<PathBuf> =
@@ -127,7 +128,7 @@ pub(crate) fn organs(out: &Path, share: Share) -> Outcome<(PathBuf, Vec<PathBuf>
     let made = Organs { burgeon, files, law, out };
     let whole = made.list()?;
     let sample = sample(&whole, share);
-    let [digests, others] = beside(|| made.digests(&whole, "4"), || made.digests(&sample, "1"))?;
+    let [digests, others] = in_parallel(|| made.digests(&whole, "4"), || made.digests(&sample, "1"))?;
     if let Some((name, _)) = others.iter().find(|(name, digest)| digests.get(*name) != Some(*digest)) {
         return Err(format!("{name}: its digest differs between 1 and 4 threads"));
     }
@@ -142,10 +143,10 @@ pub(crate) fn organs(out: &Path, share: Share) -> Outcome<(PathBuf, Vec<PathBuf>
     Ok((path, made.files))
 }
 
-/// Stands for the file of a model in what makes one.
+/// Placeholder for the file of a model in a command.
 const GLB: &str = "{model}";
 
-/// What organs are made of, and with.
+/// Inputs and program for organs.
 struct Organs<'a> {
     burgeon: PathBuf,
     files: Vec<PathBuf>,
@@ -153,7 +154,7 @@ struct Organs<'a> {
     out: &'a Path,
 }
 
-/// A leaf, a flower or a tree of the comparison: its name, and what makes it.
+/// A leaf, a flower or a tree of the comparison: its name, and its command.
 #[derive(Clone, Debug)]
 struct Organ {
     name: String,
@@ -161,7 +162,7 @@ struct Organ {
 }
 
 impl Organs<'_> {
-    /// All of them, in order of name. `GLB` stands for a file that is written and not looked at.
+    /// Lists all of them, in order of name. `GLB` stands for a file that is written but not read.
     fn list(&self) -> Outcome<Vec<Organ>> {
         let mut list = Vec::new();
         let mut add = |name: &str, args: &[&str], last: &[&Path]| {
@@ -185,7 +186,7 @@ impl Organs<'_> {
         let stages = self.out.join("stages.toml");
         add("stages", &opening, &[&stages, Path::new("--law"), &self.law]);
         for preset in &presets_in("crates/studio/presets")? {
-            // Needles are painted on cards where there are textures: the counts are those of what is drawn without.
+            // Needles are painted on cards where there are textures: the counts are those of trees drawn without.
             let args = ["grow", preset, "--detail", DETAIL, "--no-textures", "-o", GLB];
             add(&format!("tree {preset}"), &args, &[]);
         }
@@ -193,7 +194,7 @@ impl Organs<'_> {
         Ok(list)
     }
 
-    /// What is made of each on so many threads.
+    /// Makes each with the given number of threads and returns the digests.
     fn digests(&self, list: &[Organ], threads: &str) -> Outcome<serde_json::Map<String, serde_json::Value>> {
         let report = self.out.join(format!("organ-{threads}.json"));
         let glb = self.out.join(format!("organ-{threads}.glb")).display().to_string();
@@ -219,7 +220,7 @@ impl Organs<'_> {
     }
 }
 
-/// The keys of the presets in a folder.
+/// Returns the keys of the presets in a folder.
 fn presets_in(folder: &str) -> Outcome<Vec<String>> {
     let folder = repository().join(folder);
     let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", shown(&folder)))?;
@@ -231,7 +232,7 @@ fn presets_in(folder: &str) -> Outcome<Vec<String>> {
     if keys.is_empty() { Err(format!("{}: no presets", shown(&folder))) } else { Ok(keys) }
 }
 
-/// Makes every drawing with the native program on four threads and a share of them on one; returns the report of all.
+/// Makes every drawing with the native program on four threads and a part of them on one; returns the report of all.
 pub(crate) fn models(drawings: &[PathBuf], to: &Path, share: Share) -> Outcome<PathBuf> {
     std::fs::create_dir_all(to).map_err(|e| format!("{}: {e}", shown(to)))?;
     let (report, digests) = made_drawings(drawings, to, "4")?;
@@ -250,7 +251,7 @@ pub(crate) fn models(drawings: &[PathBuf], to: &Path, share: Share) -> Outcome<P
     Ok(report)
 }
 
-/// Makes drawings on so many threads: their report, and their digests by name.
+/// Makes drawings with the given number of threads: their report, and their digests by name.
 fn made_drawings(
     drawings: &[PathBuf],
     to: &Path,

@@ -8,17 +8,17 @@ use crate::toolchain::shown;
 use crate::web::{Core, Tools, bindgen, build_core};
 use xtask::shell::{Outcome, burgeon, finish, output, prepare, repository, say, target_dir};
 
-/// What a page downloads of a core that makes trees alone: at most so many bytes, compressed (gzip -9).
+/// Most bytes of a core that makes only trees, as a page downloads it, compressed (gzip -9).
 const GROWTH_BYTES: u64 = 900_000;
 
-/// The two cores: the folder that each is in, and whether it makes more than trees.
+/// The two cores: the folder of each, and whether it makes more than trees.
 const CORES: [(&str, bool); 2] = [("core", true), ("growth/core", false)];
 
 fn folder() -> PathBuf {
     repository().join("apps/npm")
 }
 
-/// An npm command in the package's folder.
+/// Returns an npm command in the package's folder.
 fn npm(args: &[&str]) -> std::process::Command {
     say(&format!("$ npm {} (in apps/npm)", args.join(" ")));
     let mut c = prepare(if cfg!(windows) { "npm.cmd" } else { "npm" }, args);
@@ -26,7 +26,7 @@ fn npm(args: &[&str]) -> std::process::Command {
     c
 }
 
-/// Installs the packages of the lock file, if they are not those that are there.
+/// Installs the packages of the lock file, if others are installed.
 fn packages() -> Outcome {
     let stamp = folder().join("node_modules/.burgeon-lock");
     let lock = folder().join("package-lock.json");
@@ -38,7 +38,7 @@ fn packages() -> Outcome {
     std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", shown(&stamp)))
 }
 
-/// Builds the package into `apps/npm/dist`: for people, or for tests, whose core is quicker to build.
+/// Builds the package into `apps/npm/dist`: for users, or for tests, whose core is quicker to build.
 fn build(tools: &Tools, release: bool) -> Outcome {
     packages()?;
     let dist = folder().join("dist");
@@ -75,7 +75,7 @@ fn copy(from: &Path, to: &Path) -> Outcome {
     Ok(())
 }
 
-/// `cargo xtask npm`: the package for people as a tarball in `target/npm`. Fails if the small core is too large.
+/// `cargo xtask npm`: packs the package for users as a tarball in `target/npm`. Fails if the small core is too large.
 pub(crate) fn pack(tools: &Tools) -> Outcome {
     build(tools, true)?;
     for (place, makers) in CORES {
@@ -132,7 +132,7 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     Ok(())
 }
 
-/// Measures the packed package beside another maker of trees, in Node and in a browser.
+/// Measures the packed package and another maker of trees, in Node and in a browser.
 pub(crate) fn bench(tools: &Tools) -> Outcome {
     pack(tools)?;
     let browser = browser().ok_or("Chromium is missing: install it or name it in BURGEON_CHROMIUM")?;

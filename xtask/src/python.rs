@@ -8,9 +8,9 @@ use xtask::shell::{
     Outcome, burgeon, command, debug_burgeon, finish, output, prepare, repository, say, target_dir,
 };
 
-/// What builds the wheel, and reads what is in Python.
+/// Packages that build the wheel, and lint the Python code.
 pub(crate) const BUILD: &[&str] = &["maturin>=1.8,<2", "ruff>=0.14,<1"];
-/// What the tests import.
+/// Imports of the tests.
 const TEST: &[&str] = &[
     "numpy",
     "pytest",
@@ -26,10 +26,13 @@ const TEST: &[&str] = &[
     "pycocotools",
     "mypy",
 ];
-/// What the step of its own imports: large, and not there for every Python.
+/// Imports of a separate step: large, and not available for every Python.
 const RAY: &[&str] = &["ray>=2"];
 
-/// Builds the wheel for people: optimised, into `target/wheels`.
+/// Imports of a separate step: programs that read what is written for simulators; not available for every system.
+const SIMULATORS: &[&str] = &["mujoco>=3", "usd-core>=25", "numpy"];
+
+/// Builds the wheel for users: optimised, into `target/wheels`.
 pub(crate) fn wheel() -> Outcome {
     let python = environment()?.ok_or("Python 3.9 or newer is missing: install it with its module venv")?;
     install(&python, BUILD)?;
@@ -38,8 +41,8 @@ pub(crate) fn wheel() -> Outcome {
     Ok(())
 }
 
-/// Builds the wheel as the tests of the workspace built what it stands on, and runs its tests. `tested`: these have just
-/// run.
+/// Builds the wheel with the same settings as the tests of the workspace, and runs its tests. `tested`: whether these
+/// have just run.
 pub(crate) fn test(tested: bool) -> Outcome {
     let Some(python) = environment()? else {
         say(
@@ -57,9 +60,17 @@ pub(crate) fn test(tested: bool) -> Outcome {
     let mut c = pip(&python, &["--force-reinstall", "--no-deps"]);
     c.arg(&wheel);
     finish(c)?;
-    pytest(&python, "not ray")?;
+    pytest(&python, "not ray and not simulators")?;
     say(&format!("Python: {} s", started.elapsed().as_secs()));
-    // Large, and not for every system: a step of its own.
+    let started = Instant::now();
+    match install(&python, SIMULATORS) {
+        Ok(()) => {
+            pytest(&python, "simulators")?;
+            say(&format!("Python with MuJoCo and USD: {} s", started.elapsed().as_secs()));
+        }
+        Err(e) => say(&format!("skipped: MuJoCo and USD cannot be had here ({e})")),
+    }
+    // Large, and not for every system: a separate step.
     let started = Instant::now();
     if let Err(e) = install(&python, RAY) {
         say(&format!("skipped: Ray cannot be had here ({e})"));
@@ -70,7 +81,7 @@ pub(crate) fn test(tested: bool) -> Outcome {
     Ok(())
 }
 
-/// Lints what is in Python (`apps/ruff.toml`), and checks how it is written.
+/// Lints the Python code (`apps/ruff.toml`), and checks its format.
 pub(crate) fn lint(python: &Path) -> Outcome {
     for how in [&["check", "--quiet"][..], &["format", "--check", "--quiet"]] {
         say(&format!("$ ruff {} (in apps)", how.join(" ")));
@@ -85,7 +96,7 @@ fn package() -> PathBuf {
     repository().join("apps/python")
 }
 
-/// The Python of a virtual environment of our own, made if it is not there; none without a Python to make it with.
+/// Returns the Python of a virtual environment of our own, made if it does not exist; `None` without a Python for it.
 pub(crate) fn environment() -> Outcome<Option<PathBuf>> {
     let folder = target_dir().join("python");
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
@@ -107,10 +118,10 @@ pub(crate) fn environment() -> Outcome<Option<PathBuf>> {
     Ok(Some(python))
 }
 
-/// Ends well in a Python that serves.
+/// Program that succeeds in a usable Python.
 const USABLE: &str = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 9))";
 
-/// Packages, unless they were installed before.
+/// Installs packages, unless they were installed before.
 pub(crate) fn install(python: &Path, packages: &[&str]) -> Outcome {
     let stamp = target_dir().join("python").join(format!("installed-{}", packages.len()));
     let wanted = packages.join("\n");
@@ -130,7 +141,7 @@ pub(crate) fn pip(python: &Path, extra: &[&str]) -> std::process::Command {
     c
 }
 
-/// The wheel that maturin builds with these options.
+/// Returns the wheel that maturin builds with these options.
 pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
     crate::studio::alone(&package().join("burgeon/_alone.js.gz"))?;
     let out = target_dir().join("wheels");
@@ -138,7 +149,7 @@ pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
     say(&format!("$ maturin build {} (in apps/python)", options.join(" ")));
     let mut c = prepare(python, &["-m", "maturin", "build", "--quiet", "--locked"]);
     c.args(options).arg("--out").arg(&out).current_dir(package());
-    // Maturin looks for the environment that it is called in.
+    // Maturin looks for the environment from which it is called.
     if let Some(folder) = python.parent().and_then(Path::parent) {
         c.env("VIRTUAL_ENV", folder);
     }
@@ -151,7 +162,7 @@ pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
 
 fn pytest(python: &Path, marked: &str) -> Outcome {
     say(&format!("$ pytest -m \"{marked}\" (in apps/python)"));
-    // From elsewhere: the installed package is tested, not the sources beside the tests.
+    // From another folder: the installed package is tested, not the sources next to the tests.
     let mut c = prepare(python, &["-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", marked, "--rootdir"]);
     c.arg(package()).arg(package().join("tests"));
     c.env("BURGEON", burgeon("debug")).env("PYTHONDONTWRITEBYTECODE", "1");

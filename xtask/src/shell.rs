@@ -15,29 +15,29 @@ pub fn say(text: &str) {
     println!("{text}");
 }
 
-/// The folder of the workspace.
+/// Returns the folder of the workspace.
 pub fn repository() -> PathBuf {
     // xtask lies directly below the root.
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or_else(|| Path::new(".")).to_path_buf()
 }
 
-/// Where cargo builds.
+/// Returns the folder in which cargo builds.
 pub fn target_dir() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from)
 }
 
-/// The command line as a profile's folder of the build holds it.
+/// Returns the command line in the folder of a build profile.
 pub fn burgeon(profile: &str) -> PathBuf {
     target_dir().join(profile).join(format!("burgeon{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// An example as the tests of the workspace left it.
+/// Returns an example that the tests of the workspace have built.
 pub fn example(name: &str) -> PathBuf {
     target_dir().join("debug/examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Makes sure that there is a development build of the command line. The tests of the workspace leave one, if they have
-/// just run. Named as a program and not as a package it stands on what the tests have compiled.
+/// Ensures that there is a development build of the command line. The tests of the workspace leave one, if they have
+/// just run. Named as a program and not as a package, it uses what the tests have compiled.
 pub fn debug_burgeon(tested: bool) -> Outcome {
     if tested && burgeon("debug").exists() {
         Ok(())
@@ -46,20 +46,21 @@ pub fn debug_burgeon(tested: bool) -> Outcome {
     }
 }
 
-/// Builds the command line to be there soon, rather than to be fast, and says where it is.
+/// Builds the command line quickly, rather than to be fast, and returns its path.
 pub fn quick_burgeon() -> Outcome<PathBuf> {
     cargo(&["build", "--profile", "quick", "--package", "burgeon-cli"])?;
     Ok(burgeon("quick"))
 }
 
-/// Builds the command line for release and says where it is.
+/// Builds the command line for release and returns its path.
 pub fn built_burgeon() -> Outcome<PathBuf> {
     cargo(&["build", "--release", "--package", "burgeon-cli"])?;
     Ok(burgeon("release"))
 }
 
-/// Two things at once: what waits much beside what computes. Both come to their end, whatever becomes of the other.
-pub fn beside<T: Send>(
+/// Runs two things in parallel: one that mostly waits and one that computes. Both run to their end, whatever happens to
+/// the other.
+pub fn in_parallel<T: Send>(
     one: impl FnOnce() -> Outcome<T>,
     other: impl FnOnce() -> Outcome<T> + Send,
 ) -> Outcome<[T; 2]> {
@@ -75,7 +76,7 @@ pub fn beside<T: Send>(
     })
 }
 
-/// Where tools that several checkouts share are kept.
+/// Returns the folder of tools that several checkouts share.
 pub fn cache_dir() -> PathBuf {
     let base = std::env::var_os("XDG_CACHE_HOME")
         .map(PathBuf::from)
@@ -84,7 +85,7 @@ pub fn cache_dir() -> PathBuf {
     base.join("burgeon")
 }
 
-/// A command in the repository, with its program and arguments.
+/// Returns a command in the repository, with its program and arguments.
 pub fn prepare(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
     let mut c = Command::new(program);
     c.args(args).current_dir(repository());
@@ -123,7 +124,7 @@ pub fn cargo(args: &[&str]) -> Outcome {
     command(cargo_path(), args)
 }
 
-/// The cargo that runs this program.
+/// Returns the cargo that runs this program.
 pub fn cargo_path() -> PathBuf {
     std::env::var_os("CARGO").map_or_else(|| PathBuf::from("cargo"), PathBuf::from)
 }
@@ -133,8 +134,8 @@ fn describe(c: &Command) -> String {
     words.map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// A program of the registry, of one version: built into the cache if it is not there. `extra`: further arguments of
-/// `cargo install`; `optimise`: the level, of which compiling for long counts against running for seconds.
+/// Returns a program of the registry, of one version: built into the cache if it is not there. `extra`: further
+/// arguments of `cargo install`; `optimise`: the level, which trades compile time against run time.
 pub fn installed(
     (package, program): (&str, &str),
     version: &str,

@@ -14,7 +14,7 @@ fn folder() -> PathBuf {
     repository().join("apps/studio-web")
 }
 
-/// An npm command in the Studio's folder.
+/// Runs an npm command in the Studio's folder.
 fn npm(args: &[&str]) -> Outcome {
     say(&format!("$ npm {} (in apps/studio-web)", args.join(" ")));
     let program = if cfg!(windows) { "npm.cmd" } else { "npm" };
@@ -23,7 +23,7 @@ fn npm(args: &[&str]) -> Outcome {
     finish(c)
 }
 
-/// Installs the packages of the lock file, if they are not those that are there.
+/// Installs the packages of the lock file, if others are installed.
 fn packages() -> Outcome {
     let lock = folder().join("package-lock.json");
     let stamp = folder().join("node_modules/.burgeon-lock");
@@ -46,7 +46,7 @@ pub(crate) fn build(tools: &Tools, release: bool) -> Outcome {
     if release { renew_program() } else { Ok(()) }
 }
 
-/// The stage alone as one packed script, which the Python package holds: puts it where it is wanted.
+/// Packs the stage alone as one script, which the Python package contains, and puts it into `to`.
 pub(crate) fn alone(to: &std::path::Path) -> Outcome {
     packages()?;
     npm(&["run", "--silent", "build", "--", "--config", "vite.alone.config.ts", "--logLevel", "warn"])?;
@@ -54,7 +54,7 @@ pub(crate) fn alone(to: &std::path::Path) -> Outcome {
     std::fs::copy(&from, to).map(drop).map_err(|e| format!("{} to {}: {e}", from.display(), to.display()))
 }
 
-/// Has cargo look for the page when it builds the program next: it cannot watch a folder that was not there.
+/// Makes cargo look for the page when it next builds the program: it cannot watch a folder that did not exist.
 fn renew_program() -> Outcome {
     let script = repository().join("apps/cli/build.rs");
     let touched = std::fs::File::options().append(true).open(&script);
@@ -77,7 +77,7 @@ pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     finish(c)
 }
 
-/// The page: types, style, texts and geometry in Node.
+/// Checks the page: types, style, texts and geometry in Node.
 pub(crate) fn check(tools: &Tools) -> Outcome {
     build(tools, false)?;
     npm(&["run", "--silent", "check"])?;
@@ -85,8 +85,8 @@ pub(crate) fn check(tools: &Tools) -> Outcome {
     npm(&["run", "--silent", "test"])
 }
 
-/// The main journeys in a browser, once [`check()`] has built the page; of those in a headset one, or all of them.
-/// `tested`: the tests of the workspace have just run.
+/// Runs the main journeys in a browser, once [`check()`] has built the page; of those in a headset one, or all of them.
+/// `tested`: whether the tests of the workspace have just run.
 pub(crate) fn journeys(tested: bool, share: Share) -> Outcome {
     let Some(browser) = browser() else {
         say("skipped: the Studio's journeys need Chromium; install it or name it in BURGEON_CHROMIUM");
@@ -107,10 +107,10 @@ pub(crate) fn journeys(tested: bool, share: Share) -> Outcome {
     finish(c)
 }
 
-/// Pages that are killed in each run: eight rounds of four, one of them with the whole browser. All are 200.
+/// Number of pages that are killed in each run: eight rounds of four, one of them with the whole browser. All are 200.
 const SOME_KILLS: &str = "30";
 
-/// Kills pages at any moment and asks for their strokes, once [`check()`] has built the page.
+/// Kills pages at any moment and checks that their strokes survive, once [`check()`] has built the page.
 pub(crate) fn kills(share: Share) -> Outcome {
     let Some(browser) = browser() else { return Ok(()) };
     say("$ node e2e/kills.mjs");
@@ -140,8 +140,8 @@ pub(crate) fn bench(tools: &Tools) -> Outcome {
     finish(c)
 }
 
-/// A small font (1.6 MB) with Chinese letters, where there is none and no question is needed: without one the journeys pass,
-/// and their pictures show boxes.
+/// Installs a small font (1.6 MB) with Chinese letters, if there is none and no question is needed: without one the
+/// journeys pass, and their pictures show boxes.
 fn chinese_letters() {
     let there = output(prepare("fc-list", &[":lang=zh"])).is_ok_and(|fonts| !fonts.trim().is_empty());
     if there || !is_root_on_debian() {
@@ -154,12 +154,12 @@ fn chinese_letters() {
     }
 }
 
-/// A Chromium: named, found, or installed where that needs no question.
+/// Returns a Chromium: named, found, or installed if that needs no question.
 pub(crate) fn browser() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("BURGEON_CHROMIUM") {
         return Some(named.into());
     }
-    // The whole path: what starts the browser looks at no search path.
+    // The whole path: the launcher of the browser uses no search path.
     let find = || {
         let folders: Vec<PathBuf> =
             std::env::var_os("PATH").map(|p| std::env::split_paths(&p).collect()).unwrap_or_default();

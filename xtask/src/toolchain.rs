@@ -20,12 +20,12 @@ pub(crate) enum WasmCargo {
 }
 
 impl WasmCargo {
-    /// `cargo ARGS` with this toolchain.
+    /// Returns `cargo ARGS` with this toolchain.
     pub(crate) fn command(self, args: &[&str]) -> Command {
         match self {
             Self::Own => prepare(cargo_path(), args),
             Self::Debian => {
-                // `cargo` of rustup understands `+toolchain`; the one in $CARGO is past that.
+                // `cargo` of rustup understands `+toolchain`; the one in $CARGO does not.
                 let mut c = prepare("cargo", &[]);
                 c.env_remove("RUSTUP_TOOLCHAIN").env_remove("RUSTC").env_remove("CARGO");
                 c.arg(format!("+{DEBIAN}")).args(args);
@@ -71,7 +71,7 @@ pub(crate) fn is_root_on_debian() -> bool {
     root && Path::new("/etc/debian_version").exists()
 }
 
-/// Debian's compiler for web browsers with the source of its std: std is built once for wasm32 and kept.
+/// Sets up Debian's compiler for web browsers with the source of its std: std is built once for wasm32 and kept.
 fn debian() -> Outcome<WasmCargo> {
     let home = cache_dir().join("debian-rust");
     let usr = home.join("usr");
@@ -98,7 +98,7 @@ fn debian() -> Outcome<WasmCargo> {
     Ok(WasmCargo::Debian)
 }
 
-/// The first dependency of a package whose name starts so.
+/// Returns the first dependency of a package whose name starts with `prefix`.
 fn dependency(package: &str, prefix: &str) -> Outcome<String> {
     let listing = output(prepare("apt-cache", &["depends", package]))?;
     let names = listing.lines().filter_map(|l| l.trim().strip_prefix("Depends: "));
@@ -138,7 +138,8 @@ fn read_dir(dir: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Debian's compiler expects its libraries on the system's path and has neither cargo nor a linker for wasm.
+/// Links Debian's compiler, which expects its libraries on the system's path and has neither cargo nor a linker for
+/// wasm.
 #[cfg(unix)]
 fn complete_toolchain(usr: &Path) -> Outcome {
     let link = |from: &Path, to: &Path| -> Outcome {
@@ -202,7 +203,7 @@ fn build_std(home: &Path, std_lib: &Path) -> Outcome {
     std::fs::remove_dir_all(&package).map_err(|e| format!("{}: {e}", package.display()))
 }
 
-/// Says where a file lies relative to the repository, for messages.
+/// Returns the path of a file relative to the repository, for messages.
 pub(crate) fn shown(path: &Path) -> String {
     path.strip_prefix(repository()).unwrap_or(path).display().to_string()
 }

@@ -8,14 +8,14 @@ use xtask::shell::{
     Outcome, burgeon, command, debug_burgeon, finish, installed, output, prepare, repository, say, target_dir,
 };
 
-/// Everything that the WASM tests need.
+/// Tools for the WASM tests.
 #[derive(Debug)]
 pub(crate) struct Tools {
     cargo: WasmCargo,
     wasm_bindgen: PathBuf,
 }
 
-/// Installs what is missing.
+/// Installs missing tools.
 pub(crate) fn setup() -> Outcome<Tools> {
     let node = output(prepare("node", &["--version"])).map_err(|missing| {
         let how = if is_root_on_debian() { " (Debian: `apt-get install nodejs npm`)" } else { "" };
@@ -37,7 +37,7 @@ fn node_folder() -> PathBuf {
     repository().join("xtask/node")
 }
 
-/// wasm-bindgen's program, of the version of the crate in the lock file.
+/// Returns wasm-bindgen's program, of the version of the crate in the lock file.
 fn wasm_bindgen() -> Outcome<PathBuf> {
     let lock =
         std::fs::read_to_string(repository().join("Cargo.lock")).map_err(|e| format!("Cargo.lock: {e}"))?;
@@ -51,8 +51,8 @@ fn wasm_bindgen() -> Outcome<PathBuf> {
     installed(("wasm-bindgen-cli", "wasm-bindgen"), &version, &only, "1")
 }
 
-/// Builds the WASM package, runs it in Node beside the native program, and validates every GLB. `tested`: the tests of
-/// the workspace have just run.
+/// Builds the WASM package, runs it in Node and compares it with the native program, and validates every GLB. `tested`:
+/// whether the tests of the workspace have just run.
 pub(crate) fn test(tools: &Tools, tested: bool, share: Share) -> Outcome {
     debug_burgeon(tested)?;
     let out = target_dir().join("xtask-test");
@@ -91,21 +91,21 @@ pub(crate) fn test(tools: &Tools, tested: bool, share: Share) -> Outcome {
     finish(c)
 }
 
-/// What is built for a browser.
+/// Core that is built for a browser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Core {
-    /// That of the Studio.
+    /// The core of the Studio.
     Studio,
-    /// The same with what only the checks in Node ask.
+    /// The same with functions that only the checks in Node call.
     Checked,
-    /// That of the npm package: with all makers, or of trees alone.
+    /// The core of the npm package: with all makers, or with trees alone.
     Npm {
-        /// All of them.
+        /// Whether it has all makers.
         makers: bool,
     },
 }
 
-/// Measures rounds of guided growth in Node, in the core as a browser has it.
+/// Measures rounds of guided growth in Node, in the core as a browser runs it.
 pub(crate) fn bench_growth(tools: &Tools) -> Outcome {
     let to = target_dir().join("xtask-bench");
     bindgen(tools, &build_core(tools, Core::Checked, true)?, "nodejs", &to)?;
@@ -115,8 +115,8 @@ pub(crate) fn bench_growth(tools: &Tools) -> Outcome {
     finish(c)
 }
 
-/// Compiles the cores that tests need: each is made into a package where it is tested. That of trees alone is compiled there,
-/// too, as it takes the place of the other one of npm.
+/// Compiles the cores that tests need: each is made into a package where it is tested. The core of trees alone is
+/// compiled there, too, as it replaces the other one of npm.
 pub(crate) fn compile(tools: &Tools) -> Outcome {
     build_core(tools, Core::Checked, false).map(drop)
 }
@@ -136,7 +136,7 @@ pub(crate) fn build_core(tools: &Tools, core: Core, release: bool) -> Outcome<Pa
     if release {
         args.extend(["--package", package, "--profile=web"]);
     } else {
-        // Both packages, with the features of both: what they stand on is compiled once.
+        // Both packages, with the features of both: their shared dependencies are compiled once.
         args.extend(["--package", "burgeon-wasm", "--package", "burgeon-npm"]);
     }
     match core {
@@ -148,10 +148,10 @@ pub(crate) fn build_core(tools: &Tools, core: Core, release: bool) -> Outcome<Pa
     say(&format!("$ cargo {}", args.join(" ")));
     let mut c = tools.cargo.command(&args);
     if release {
-        // The classifier's sums run four abreast. The same bits: Rust never reorders floating-point sums by itself.
+        // The classifier's sums run four in parallel. The same bits: Rust never reorders floating-point sums by itself.
         c.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-Ctarget-feature=+simd128");
     } else if tools.cargo == WasmCargo::Own {
-        // What only this target compiles passes no other check.
+        // Code that only this target compiles passes no other check.
         c.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-Dwarnings");
     }
     finish(c)?;

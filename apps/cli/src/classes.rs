@@ -10,10 +10,10 @@ use serde_json::Value;
 
 use crate::failure::{Failure, Outcome};
 
-/// The overrides of a run, by the drawing's name.
+/// Overrides of a run, by the drawing's name.
 #[derive(Debug, Default)]
 pub(crate) struct Classes {
-    /// For the one drawing of the run.
+    /// Overrides for the only drawing of the run.
     any: ClassOverrides,
     named: BTreeMap<String, ClassOverrides>,
     used: Mutex<BTreeSet<String>>,
@@ -22,7 +22,7 @@ pub(crate) struct Classes {
 impl Classes {
     pub(crate) fn read(path: &Path) -> Outcome<Self> {
         let text = crate::files::read_text(path)?;
-        Self::parse(&text).map_err(|what| Failure::at(path, what))
+        Self::parse(&text).map_err(|what| Failure::bad_file(path, what))
     }
 
     fn parse(text: &str) -> Result<Self, String> {
@@ -58,11 +58,11 @@ impl Classes {
         }
         let index = index_of(stroke)?;
         let class = class_of(class.unwrap_or_default())?;
-        self.of(name).insert(index, class);
+        self.overrides_mut(name).insert(index, class);
         Ok(())
     }
 
-    fn of(&mut self, name: Option<&str>) -> &mut ClassOverrides {
+    fn overrides_mut(&mut self, name: Option<&str>) -> &mut ClassOverrides {
         match name {
             Some(name) => self.named.entry(name.to_owned()).or_default(),
             None => &mut self.any,
@@ -93,7 +93,7 @@ impl Classes {
         }
     }
 
-    // One class a stroke in order; null keeps what is found.
+    // Adds one class for each stroke in order; null keeps the class found.
     fn add_list(&mut self, name: Option<&str>, list: &[Value]) -> Result<(), String> {
         for (k, class) in list.iter().enumerate().filter(|(_, class)| !class.is_null()) {
             self.add_entry(name, &k.to_string(), class)?;
@@ -105,7 +105,7 @@ impl Classes {
         let index = index_of(stroke)?;
         let word = class.as_str().ok_or_else(|| format!("the class of stroke {index} is not a word"))?;
         let class = class_of(word)?;
-        self.of(name).insert(index, class);
+        self.overrides_mut(name).insert(index, class);
         Ok(())
     }
 
@@ -121,10 +121,10 @@ impl Classes {
         Ok(())
     }
 
-    /// Fails when entries without a drawing's name meet more than one drawing.
+    /// Fails when entries without a drawing's name are used with more than one drawing.
     pub(crate) fn fits_batch(&self, path: Option<&Path>) -> Outcome {
         match path {
-            Some(path) if !self.any.is_empty() => Err(Failure::at(
+            Some(path) if !self.any.is_empty() => Err(Failure::bad_file(
                 path,
                 "names no drawing, but there are several; write drawing,stroke,class or {\"drawing\": {\"3\": \"axis\"}}",
             )),
@@ -132,7 +132,7 @@ impl Classes {
         }
     }
 
-    /// What is set for a drawing.
+    /// Returns the overrides for a drawing.
     pub(crate) fn of_drawing(&self, name: &str) -> ClassOverrides {
         let mut out = self.any.clone();
         if let Some(named) = self.named.get(name) {
@@ -146,7 +146,7 @@ impl Classes {
         out
     }
 
-    /// Names in the file that no drawing had.
+    /// Returns the names in the file that no drawing had.
     pub(crate) fn unused(&self) -> Vec<&str> {
         let used = self.used.lock();
         let is_used = |name: &String| used.as_ref().is_ok_and(|used| used.contains(name));

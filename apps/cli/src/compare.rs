@@ -1,4 +1,4 @@
-//! `burgeon compare oak|guided`: one oak by several methods, side by side.
+//! `burgeon compare oak|guided`: one oak by several methods, next to each other.
 
 use burgeon::formats::{ExportSpec, ModelFormat};
 use burgeon::growth::Method;
@@ -18,7 +18,7 @@ use crate::output::Outputs;
 use crate::{picture, report, say};
 
 impl CompareWord {
-    /// The trees, not grown yet.
+    /// Returns the trees, not grown yet.
     fn trees(self) -> Outcome<Vec<Oak>> {
         match self {
             Self::Oak => {
@@ -54,7 +54,7 @@ fn preset(key: &'static str) -> Outcome<TreeSpec> {
     preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")))
 }
 
-/// Guided growth and its baseline in the crown of the oak.
+/// Returns guided growth and its baseline in the crown of the oak.
 fn compared() -> Outcome<[Method; 2]> {
     guided_methods(&preset("oak")?.method)
         .ok_or_else(|| Failure::Bug("preset oak: has no envelope".to_owned()))
@@ -72,18 +72,18 @@ struct Row {
     vertices: u64,
     triangles: u64,
     leaves: u64,
-    /// One side of all blades.
+    /// Leaf area, one side of all blades.
     leaf_area_m2: f64,
-    /// Wood of trunk and branches as the pipe model has it.
+    /// Volume of the wood of trunk and branches by the pipe model.
     wood_m3: f64,
-    /// Growth alone.
+    /// Time of growth alone.
     growth_seconds: f64,
-    /// Growth, wood, leaves and meshes.
+    /// Time of growth, wood, leaves and meshes.
     seconds: f64,
-    /// As binary glTF with textures.
+    /// Size as binary glTF with textures.
     bytes: u64,
     digest: String,
-    /// What Yang et al. (2019), Table 2, printed for this method, thousands and seconds.
+    /// Figures of Yang et al. (2019), Table 2, for this method, thousands and seconds.
     #[serde(skip_serializing_if = "Option::is_none")]
     paper: Option<PaperRow>,
 }
@@ -109,7 +109,7 @@ struct Comparison {
     version: &'static str,
     seed: u64,
     rows: Vec<Row>,
-    /// Growth alone, by rounds.
+    /// Figures of growth alone, by rounds.
     #[serde(skip_serializing_if = "Option::is_none")]
     curve: Option<Curve>,
     notes: &'static str,
@@ -146,7 +146,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
             oaks.push(oak);
             progress.reached(oaks.len());
         }
-        // Leaves for leaves: each tree keeps as many of its best lit ones as the one with fewest has.
+        // An equal number of leaves: each tree keeps as many of its best lit ones as the tree with fewest has.
         let fewest = oaks.iter().map(|o| o.leaves).min().unwrap_or(0);
         let mut made = Vec::new();
         for mut oak in oaks {
@@ -181,7 +181,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     Ok(())
 }
 
-/// One of the oaks, grown once: so textures are painted before a clock starts, and its leaves are counted.
+/// One of the oaks, grown once, so that textures are painted before timing starts, and its leaves are counted.
 struct Oak {
     method: &'static str,
     key: &'static str,
@@ -201,7 +201,7 @@ impl Oak {
         made.map_err(|e| cancelled_or(e, self.key))
     }
 
-    /// Leaves so many leaves that `count` stay.
+    /// Reduces the leaves so that `count` remain.
     fn keep(&mut self, count: u64) {
         let keep = &mut self.spec.leaves.leaf_keep;
         *keep = (*keep * count as f64 / self.leaves.max(1) as f64).min(1.0);
@@ -294,7 +294,7 @@ fn table(rows: &[Row]) {
     }
 }
 
-/// Pictures of one height, joined from left to right.
+/// Joins pictures of one height from left to right.
 fn side_by_side(pictures: &[Picture]) -> Picture {
     let height = pictures.first().map_or(0, |p| p.height);
     let width = pictures.iter().map(|p| p.width).sum();

@@ -37,23 +37,23 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     let mut item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &mut outputs, &machine)?,
         (Kind::Project, true) => project(args, input, &mut outputs, &machine)?,
-        // It is written above.
+        // Handled above.
         (Kind::Structure(_), _) => return Err(Failure::Bug("the structure of a plant is no model".into())),
         (Kind::Model(_), false) => model(args, input, kind, &mut outputs, &machine)?,
         (Kind::Drawing(_), false) => {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 &args.input,
                 "is a drawing: it converts to .json and .svg; `burgeon sketch` makes a model of it",
             ));
         }
         (Kind::Project, false) => {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 &args.input,
                 "is a project: it converts to .json and .svg; `burgeon sketch` makes a model of it",
             ));
         }
         (Kind::Model(_), true) => {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 &args.output,
                 format_args!("a model converts to {}, not to a drawing", ModelFormat::written_endings()),
             ));
@@ -110,7 +110,7 @@ fn model(
     Ok(item)
 }
 
-/// Axes and unit of a model or a cloud that is read.
+/// Returns axes and unit of a model or a cloud that is read.
 fn read_axes(args: &ConvertArgs) -> Outcome<ExportSpec> {
     let unit = match args.structure.in_unit {
         None => args.axes.unit,
@@ -191,7 +191,7 @@ fn structure_file(
     Ok(())
 }
 
-/// Fails on options that nothing uses.
+/// Fails on unused options.
 fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
     let given = &args.given;
     let Kind::Model(read) = kind else {
@@ -227,7 +227,7 @@ fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
     given.check_axes(written || read.holds(Room::Axes))
 }
 
-/// A cloud, with what its reader says, where its origin is and how long reading took.
+/// A cloud, with the messages of its reader, the place of its origin and the time of reading.
 struct Read {
     cloud: PointCloud,
     warnings: Vec<String>,
@@ -236,14 +236,14 @@ struct Read {
     ms: f64,
 }
 
-/// What the input turned out to be.
+/// Result of opening the input.
 enum Opened {
     Points(Read),
     Other(files::Input, Kind),
 }
 
-/// The points of a file that is read as a scan: of a format that holds nothing else, or so far from their origin that
-/// they need double precision.
+/// Returns the points of a file that is read as a scan: of a format that holds nothing else, or so far from their
+/// origin that they need double precision.
 fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
     let path = &args.input;
     let other = || files::open(path).map(|(input, kind)| Opened::Other(input, kind));
@@ -276,7 +276,7 @@ fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
     let mut cloud = match cloud {
         Ok(cloud) => cloud,
         Err(e) if only => return Err(e),
-        // The reader of models says what is wrong.
+        // The reader of models reports the fault.
         Err(_) => return other(),
     };
     let mut origin = Origin::default();
@@ -293,7 +293,7 @@ fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
 fn points(args: &ConvertArgs, read: Read, mut outputs: Outputs, machine: &Machine) -> Outcome {
     args.given.refuse(&["pack"], "models with faces", "points are converted")?;
     args.given.refuse(&["plant", "thickness_unit"], "files of structure", "points are converted")?;
-    // Axes and unit are always of use: no cloud fixes them.
+    // Axes and unit always apply: no cloud fixes them.
     args.given.check_picture(args.png.is_some(), &args.picture)?;
     let format = files::writable(&args.output)?;
     let axes = files::axes(args.axes.up, args.axes.unit);
@@ -322,7 +322,7 @@ fn points(args: &ConvertArgs, read: Read, mut outputs: Outputs, machine: &Machin
     item.warnings = warnings;
     let mut run = RunReport::new("convert", args.seed);
     run.input.path = args.input.display().to_string();
-    run.input.offset_m = read.origin.told(&read.axes);
+    run.input.offset_m = read.origin.offset_in(&read.axes);
     run.items.push(item);
     run.ok = 1;
     report::finish(&run, &args.common, outputs)?;
@@ -357,10 +357,10 @@ fn drawing(
 ) -> Outcome<ItemReport> {
     let mut drawings = read_drawings(input, format, &files::stem(&args.input));
     let (first, read_ms) = machine.timed(|| drawings.next());
-    let first = first.ok_or_else(|| Failure::at(&args.input, "holds no drawing"))?;
-    let first = first.map_err(|e| Failure::at(&args.input, e))?;
+    let first = first.ok_or_else(|| Failure::bad_file(&args.input, "holds no drawing"))?;
+    let first = first.map_err(|e| Failure::bad_file(&args.input, e))?;
     if drawings.next().is_some() {
-        return Err(Failure::at(
+        return Err(Failure::bad_file(
             &args.input,
             "holds several drawings, a .json or .svg file holds one; split the file by lines",
         ));

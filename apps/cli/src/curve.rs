@@ -1,4 +1,4 @@
-//! `burgeon compare guided`: time against buds, as the VR paper's Fig 19 has it (its own numbers are lost).
+//! `burgeon compare guided`: time against buds, as in the VR paper's Fig 19 (its own numbers are lost).
 
 use burgeon::growth::{self, Envelope, GuidedSpec, Light, Method, Obstacles, SelfOrganizingSpec, Skeleton};
 use burgeon::{Budget, Report, Run, Seed, glam::DVec3};
@@ -8,49 +8,49 @@ use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::{memory, say};
 
-/// Markers of a bud that the paper speaks of.
+/// Markers of a bud in the paper.
 const PAPER_MARKERS: u32 = 1300;
-/// Rounds at which a tree is looked at.
+/// Rounds at which a tree is measured.
 const ROUNDS: [u32; 4] = [8, 16, 24, 32];
-/// Less than this is measured again, ms.
+/// Time below which a measurement is repeated, ms.
 const QUICK_MS: f64 = 200.0;
-/// Places of the crown of which it is asked whether wood is near.
+/// Number of places of the crown that are tested for wood nearby.
 const PLACES: usize = 2000;
-/// A crown is full where so much of it has wood within a bud's perception.
+/// Share of a crown with wood within a bud's perception at which it counts as full.
 const FULL: f64 = 0.95;
 
 /// A method at a number of rounds.
 #[derive(Debug, Serialize)]
 pub(crate) struct Point {
     method: &'static str,
-    /// Of a bud and round; of the whole crown for the baseline, which scatters them once.
+    /// Markers of a bud and round; of the whole crown for the baseline, which scatters them once.
     markers: u32,
     rounds: u32,
-    /// Internodes that were grown, shed ones included: each bore a bud.
+    /// Internodes grown, including shed ones: each bore a bud.
     buds: usize,
-    /// The share of the crown that has wood within a bud's perception.
+    /// Share of the crown that has wood within a bud's perception.
     filled: f64,
-    /// Growth alone.
+    /// Time of growth alone.
     seconds: f64,
-    /// What growth had in use at most.
+    /// Largest memory that growth used.
     peak_mib: f64,
 }
 
-/// How much less time ours takes until the crown is as full; one for each number of markers.
+/// Ratio of the times in which both methods fill the crown equally; one for each number of markers.
 #[derive(Debug, Serialize)]
 pub(crate) struct Ratio {
     markers: u32,
-    /// The share of the crown at which both are compared.
+    /// Share of the crown at which both are compared.
     filled: f64,
     baseline_seconds: f64,
     seconds: f64,
-    /// Baseline over ours.
+    /// Time of the baseline over ours.
     times: f64,
     /// Memory of the baseline over ours.
     memory: f64,
 }
 
-/// The curve, and what follows from it.
+/// The curve, and its results.
 #[derive(Debug, Serialize)]
 pub(crate) struct Curve {
     points: Vec<Point>,
@@ -63,7 +63,7 @@ pub(crate) fn curve(methods: &[Method; 2], seed: u64, machine: &Machine) -> Outc
     };
     let envelope = guided.envelope.clone().ok_or_else(|| Failure::Bug("no envelope".to_owned()))?;
     let crown = Crown::new(&envelope, guided.far * guided.internode_m)?;
-    // The paper's markers are more than the usual budget allows.
+    // The paper's markers exceed the default budget.
     let run = Run { budget: Budget { times: 1000.0, ..Budget::default() }, ..machine.single() };
     let mut points = Vec::new();
     let Light::Space { markers, .. } = baseline.light else {
@@ -95,7 +95,7 @@ pub(crate) fn curve(methods: &[Method; 2], seed: u64, machine: &Machine) -> Outc
     Ok(Curve { points, at_equal_quality: at_equal_quality.into_iter().flatten().collect() })
 }
 
-/// Both methods where they first fill as much as each of them can, or [`FULL`] if both come so far.
+/// Compares both methods where they first fill as much as each of them can, or [`FULL`] if both reach it.
 fn ratio(points: &[Point], markers: u32) -> Option<Ratio> {
     let ours: Vec<&Point> =
         points.iter().filter(|p| p.method == "guided growth" && p.markers == markers).collect();
@@ -112,7 +112,7 @@ fn ratio(points: &[Point], markers: u32) -> Option<Ratio> {
     Some(Ratio { markers, filled, baseline_seconds, seconds, times, memory })
 }
 
-/// What is to be filled.
+/// The crown to be filled.
 struct Crown {
     places: Vec<DVec3>,
     near_m: f64,
@@ -140,7 +140,7 @@ impl Crown {
             grown.map(|g| (g, ms, peak))
         };
         let ((buds, skeleton), first, peak) = once()?;
-        // What is over at once is measured twice.
+        // A very short measurement is repeated.
         let second = if first < QUICK_MS { once()?.1 } else { first };
         let wood = burgeon::geom::KdTree::new(&skeleton.position);
         let near = self.places.iter().filter(|p| wood.nearest(**p, self.near_m).is_some()).count();

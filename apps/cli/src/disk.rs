@@ -1,4 +1,5 @@
-//! What is done to files on their way to a place, one function each: tests let any of them fail, or take the power away.
+//! Operations on files on their way to a place, one function each: tests can make any of them fail, or simulate a loss
+//! of power.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -33,7 +34,7 @@ pub(crate) struct NewFile {
 }
 
 impl NewFile {
-    /// A file under a name that nobody has.
+    /// Creates a file under a name that nobody has.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
         before(Act::Create, path, path)?;
         let file = File::options().read(true).write(true).create_new(true).open(path)?;
@@ -47,7 +48,7 @@ impl NewFile {
     /// Waits until the disk has its bytes.
     pub(crate) fn sync(&self) -> io::Result<()> {
         before(Act::Sync, &self.path, &self.path)?;
-        // In tests only files that fail are of interest.
+        // Tests are interested only in failing files.
         if cfg!(test) { Ok(()) } else { self.file.sync_all() }
     }
 }
@@ -63,7 +64,7 @@ impl Write for NewFile {
     }
 }
 
-/// Gives a file another name in its folder; what had that name is replaced.
+/// Gives a file another name in its folder; a file of that name is replaced.
 pub(crate) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     before(Act::Rename, from, to)?;
     fs::rename(from, to)
@@ -80,8 +81,8 @@ pub(crate) fn remove(path: &Path) -> io::Result<()> {
     fs::remove_file(path)
 }
 
-/// Waits until the disk has the names of a folder: what was renamed stays so when the power fails. Not every system and
-/// disk can; where one cannot, nothing is waited for.
+/// Waits until the disk has the names of a folder, so that renamed files stay renamed when the power fails. Not every
+/// system and disk can do this; where one cannot, the function returns at once.
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     before(Act::SyncFolder, folder, folder)?;
     #[cfg(all(unix, not(test)))]
@@ -96,7 +97,7 @@ pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Disks that fail, for tests; of the thread that asks.
+/// Failing disks for tests, for the calling thread only.
 #[cfg(all(test, unix))]
 pub(crate) mod faults {
     use std::cell::RefCell;
@@ -108,16 +109,16 @@ pub(crate) mod faults {
         static DISK: RefCell<Option<Disk>> = const { RefCell::new(None) };
     }
 
-    /// What happens at a call.
+    /// Behaviour of a call.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) enum Fault {
-        /// It fails, and others go on.
+        /// It fails, and later calls succeed.
         Fails,
         /// Nothing succeeds from it on, until [`reboot`].
         PowerLoss,
     }
 
-    /// How a change is taken back that the disk did not have yet.
+    /// Undo of a change that the disk did not have yet.
     enum Undo {
         Remove(PathBuf),
         Rename { from: PathBuf, to: PathBuf, replaced: Option<PathBuf> },
@@ -126,19 +127,19 @@ pub(crate) mod faults {
 
     struct Disk {
         fault: Fault,
-        /// The call that fails.
+        /// Number of the failing call.
         at: usize,
         calls: usize,
-        /// A folder for what may have to come back.
+        /// A folder for files that may have to be restored.
         held: PathBuf,
         names: usize,
-        /// By folder, in order.
+        /// Changes by folder, in order.
         unsynced: BTreeMap<PathBuf, Vec<Undo>>,
         /// Files whose bytes the disk does not have, with another name of each.
         unwritten: BTreeMap<PathBuf, PathBuf>,
     }
 
-    /// From now on a call fails, the first one being 0. `held` is a folder on the same disk.
+    /// Makes a later call fail, the first one being 0. `held` is a folder on the same disk.
     pub(crate) fn plan(fault: Fault, at: usize, held: &Path) {
         let disk = Disk {
             fault,
@@ -152,13 +153,13 @@ pub(crate) mod faults {
         DISK.set(Some(disk));
     }
 
-    /// Ends the faults; whether the planned one came.
+    /// Ends the faults; returns whether the planned one occurred.
     pub(crate) fn end() -> bool {
         DISK.take().is_some_and(|disk| disk.calls > disk.at)
     }
 
-    /// Starts after a loss of power: of each folder some of the last changes that were not synced are gone, which ones
-    /// `random` says, and files that were not synced are empty. Whether the power was lost.
+    /// Starts after a loss of power: for each folder some of the last changes that were not synced are lost, as
+    /// `random` chooses, and files that were not synced are empty. Returns whether the power was lost.
     pub(crate) fn reboot(mut random: impl FnMut(usize) -> usize) -> bool {
         let Some(disk) = DISK.take() else { return false };
         if disk.calls <= disk.at {

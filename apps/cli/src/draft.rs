@@ -1,4 +1,4 @@
-//! Files that are being written: hidden, beside their target, under a name that nobody else has.
+//! Files that are being written: hidden, next to their target, under a name that nobody else has.
 
 use std::fs;
 use std::io;
@@ -17,17 +17,17 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    /// A new, empty file in a folder, in which is finished or removed first what others left.
+    /// Creates an empty file in a folder, where the remains of others are first finished or removed.
     pub(crate) fn create(folder: &Path) -> io::Result<(Self, NewFile)> {
-        let (lease, is_first) = Lease::of(folder)?;
+        let (lease, is_first) = Lease::acquire(folder)?;
         if is_first {
             sweep(&lease);
         }
         Self::fresh(&lease, NewFile::create)
     }
 
-    /// A second name of a file that this draft is to replace, by which it can be put back. Not on every file system, and
-    /// only of files of the same owner: in a folder such as /tmp another's name could not be removed again.
+    /// Gives a file that this draft is to replace a second name, by which it can be restored. Not on every file system,
+    /// and only for files of the same owner: in a folder such as /tmp another's name could not be removed again.
     pub(crate) fn keeping(&self, file: &Path) -> io::Result<Self> {
         if !self.lease.owns(&fs::symlink_metadata(file)?) {
             return Err(io::ErrorKind::PermissionDenied.into());
@@ -35,12 +35,12 @@ impl Draft {
         Self::fresh(&self.lease, |path| disk::link(file, path)).map(|(draft, ())| draft)
     }
 
-    // A name that is taken is another's: it is left alone and the next one is tried.
+    // A name that is taken belongs to another: it is left alone and the next one is tried.
     fn fresh<T>(lease: &Arc<Lease>, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(Self, T)> {
         let mut last = io::Error::from(io::ErrorKind::AlreadyExists);
         for _ in 0..TRIES {
             let path = lease.name(Role::Part);
-            // Under the lock: what is made is known, so that it is removed when the program is ended.
+            // Under the lock: a new file is registered, so that it is removed when the program ends.
             let mut state = state();
             match make(&path) {
                 Ok(made) => {
@@ -62,14 +62,14 @@ impl Draft {
         &self.lease
     }
 
-    /// Gives the file its name; what had that name is replaced.
+    /// Gives the file its name; a file of that name is replaced.
     pub(crate) fn put(&self, place: &Path) -> io::Result<()> {
         disk::rename(&self.path, place)?;
         state().drafts.remove(&self.path);
         Ok(())
     }
 
-    /// The opposite of [`put`](Self::put).
+    /// Undoes [`put`](Self::put).
     pub(crate) fn take_back(&self, place: &Path) -> io::Result<()> {
         disk::rename(place, &self.path)?;
         state().drafts.insert(self.path.clone());
@@ -94,7 +94,7 @@ mod tests {
     fn a_name_that_is_taken_is_left_alone() {
         let folder = std::env::temp_dir().join(format!("burgeon-draft-{:x}", random()));
         fs::create_dir(&folder).expect("a folder");
-        let (lease, _) = Lease::of(&folder).expect("a lock");
+        let (lease, _) = Lease::acquire(&folder).expect("a lock");
         let mut tries = std::cell::Cell::new(0);
         let taken = folder.join("taken");
         fs::write(&taken, "another's").expect("writes");
@@ -121,9 +121,9 @@ mod tests {
         let run = draft.lease().run.clone();
         assert_eq!(run, other.lease().run);
         drop(draft);
-        assert!(matches!(Holder::of(&folder, &run), Holder::Alive));
+        assert!(matches!(Holder::find(&folder, &run), Holder::Alive));
         drop(other);
-        assert!(matches!(Holder::of(&folder, &run), Holder::Unknown));
+        assert!(matches!(Holder::find(&folder, &run), Holder::Unknown));
         assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 0);
         fs::remove_dir(&folder).expect("removed");
     }

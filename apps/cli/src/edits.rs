@@ -1,4 +1,4 @@
-//! Files of edits by hand.
+//! Files of hand edits.
 
 use std::path::Path;
 
@@ -9,11 +9,11 @@ use burgeon::{ItemReport, plainly};
 use crate::failure::{Failure, Outcome};
 use crate::files;
 
-/// The edits of a file, all within their ranges.
+/// Reads the edits of a file, all within their ranges.
 pub(crate) fn read(path: &Path) -> Outcome<Vec<PlantEdit>> {
     let text = files::read_text(path)?;
     let file: EditsFile = serde_json::from_str(&text).map_err(|e| {
-        Failure::at(
+        Failure::bad_file(
             path,
             format_args!(
                 "is not an edits file: {}; `burgeon shape --template` prints one",
@@ -23,7 +23,7 @@ pub(crate) fn read(path: &Path) -> Outcome<Vec<PlantEdit>> {
     })?;
     if file.schema != EDITS_SCHEMA {
         let what = format_args!("is of schema \"{}\"; this version reads \"{EDITS_SCHEMA}\"", file.schema);
-        return Err(Failure::at(path, what));
+        return Err(Failure::bad_file(path, what));
     }
     for (k, edit) in file.edits.iter().enumerate() {
         edit.check().map_err(|why| {
@@ -31,16 +31,16 @@ pub(crate) fn read(path: &Path) -> Outcome<Vec<PlantEdit>> {
             match along(edit).filter(|at| !(0.0..=1.0).contains(at)) {
                 Some(at) => {
                     let line = "but it is a share of the branch's length; give a number from 0 to 1";
-                    Failure::at(path, format_args!("edit {k} ({word}): at is {at}, {line}"))
+                    Failure::bad_file(path, format_args!("edit {k} ({word}): at is {at}, {line}"))
                 }
-                None => Failure::at(path, format_args!("edit {k} ({word}): {why}")),
+                None => Failure::bad_file(path, format_args!("edit {k} ({word}): {why}")),
             }
         })?;
     }
     Ok(file.edits.into_iter().map(PlantEdit::from).collect())
 }
 
-/// The place along a branch that an edit names.
+/// Returns the place along a branch that an edit names.
 fn along(edit: &HandEdit) -> Option<f64> {
     match edit {
         HandEdit::Prune { at, .. }
@@ -51,7 +51,8 @@ fn along(edit: &HandEdit) -> Option<f64> {
     }
 }
 
-/// A plant whose new edits all failed is not what was asked for. A project's own edits, which come first, do not count.
+/// Fails if all new edits of a plant failed, as the result is not what was asked for. A project's own edits, which come
+/// first, do not count.
 pub(crate) fn some_done(path: &Path, item: &ItemReport, asked: usize) -> Outcome {
     let new = &item.edits[item.edits.len().saturating_sub(asked)..];
     let Some(first) = new.first() else { return Ok(()) };
@@ -64,5 +65,5 @@ pub(crate) fn some_done(path: &Path, item: &ItemReport, asked: usize) -> Outcome
         n => format!("none of its {n} edits could be done; the first: {why}"),
     };
     let line = format_args!("{line}; `burgeon shape --list` names the branches");
-    Err(Failure::at(path, line))
+    Err(Failure::bad_file(path, line))
 }

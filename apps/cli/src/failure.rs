@@ -1,4 +1,4 @@
-//! What ends a command early, and with which exit status.
+//! Reasons to end a command early, with their exit status.
 
 use std::fmt;
 use std::path::Path;
@@ -6,12 +6,12 @@ use std::process::ExitCode;
 
 use crate::signals;
 
-/// One clear line for the user: what, where, what to do.
+/// One clear line for the user: the fault, its place, the remedy.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// Bad usage or bad input: exit status 2.
     Bad(String),
-    /// The outcome was told already (a batch with failing drawings): exit status 2, nothing more to say.
+    /// The outcome was reported already (a batch with failing drawings): exit status 2, no further message.
     Reported,
     /// The user pressed Ctrl-C, or the program was asked to end: exit status 130.
     Cancelled,
@@ -22,25 +22,25 @@ pub(crate) enum Failure {
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
-    /// Bad input in a file.
-    pub(crate) fn at(path: &Path, what: impl fmt::Display) -> Self {
+    /// Makes a failure of bad input in a file.
+    pub(crate) fn bad_file(path: &Path, what: impl fmt::Display) -> Self {
         Self::Bad(format!("{}: {}", shown(path), burgeon::brief(&what.to_string())))
     }
 
-    /// The same of bad input, with the file that it came from.
-    pub(crate) fn of(self, path: &Path) -> Self {
-        if let Self::Bad(line) = self { Self::at(path, line) } else { self }
+    /// Returns the same failure for bad input, with the file that it came from.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        if let Self::Bad(line) = self { Self::bad_file(path, line) } else { self }
     }
 
-    /// What is wrong with scans, laws or flowers of a file.
+    /// Returns the fault of scans, laws or flowers of a file.
     pub(crate) fn bloom(path: &Path) -> impl Fn(burgeon::bloom::BloomError) -> Self + '_ {
         move |e| match e {
             burgeon::bloom::BloomError::Cancelled => Self::Cancelled,
-            e => Self::at(path, e),
+            e => Self::bad_file(path, e),
         }
     }
 
-    /// The operating system refused.
+    /// Makes the failure of a refusal by the operating system.
     pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file or folder; check the spelling".to_owned(),
@@ -64,7 +64,7 @@ impl Failure {
         Self::Bad(format!("{}: cannot be {doing}: {reason}", shown(path)))
     }
 
-    /// Tells the user on stderr, in one line.
+    /// Reports it on stderr, in one line.
     pub(crate) fn tell(&self) -> ExitCode {
         match self {
             Self::Bad(line) => {
@@ -84,7 +84,7 @@ impl Failure {
     }
 }
 
-/// A path as messages say it.
+/// Formats a path for messages.
 fn shown(path: &Path) -> impl fmt::Display {
     if crate::inputs::is_stdin(path) { Path::new("standard input") } else { path }.display()
 }
@@ -95,7 +95,7 @@ impl From<companions::NamedFileError> for Failure {
     }
 }
 
-/// What is wrong with a file that another one names.
+/// Describes the fault of a file that another one names.
 pub(crate) fn line_of(e: &companions::NamedFileError) -> String {
     format!("{}: names {:?}, {}", shown(&e.naming), burgeon::quoted(&e.name), e.fault)
 }

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    Beside, CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign, MAX_MODEL_BYTES,
-    ModelFiles, ModelFormat, NoFile, Packing, PngCache, ReadDrawing, RobotFormat, Room, SideFile,
-    StructureFormat, WriteError, decode_uri, gltf_files, model_files, names_beside, warn_of_wind,
+    Beside, CloudFacts, CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign,
+    MAX_MODEL_BYTES, ModelFiles, ModelFormat, NoFile, Packing, PngCache, ReadDrawing, RobotFormat, Room,
+    SideFile, StructureFormat, WriteError, decode_uri, gltf_files, model_files, names_beside, warn_of_wind,
     write_glb_packed, write_glb_with,
 };
 use burgeon::mesh::{Model, PointCloud};
@@ -26,7 +26,7 @@ use crate::inputs;
 use crate::output::{self, Outputs};
 use crate::signals::Stoppable;
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Drawing(DrawingFormat),
@@ -44,7 +44,7 @@ pub(crate) fn extension(path: &Path) -> Option<&str> {
 /// Bytes of a file, a pipe or standard input.
 pub(crate) type Input = Box<dyn BufRead + Send>;
 
-/// The file's name without extension, for names of drawings and models.
+/// Returns the file's name without extension, for names of drawings and models.
 pub(crate) fn stem(path: &Path) -> String {
     if inputs::is_stdin(path) {
         return "drawing".into();
@@ -52,7 +52,7 @@ pub(crate) fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "drawing".into(), |s| s.to_string_lossy().into_owned())
 }
 
-/// Opens a file and finds out what it holds. Read once and never sought in: pipes are as good as files.
+/// Opens a file and finds its kind of content. The file is read once without seeking, so pipes work, too.
 pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
@@ -68,14 +68,14 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     Ok((input, kind))
 }
 
-/// What a file is whose name does not say it, or what it may be instead.
+/// Returns the kind of a file whose name does not give it, or an error that says what it may be instead.
 pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
     sniff(start).ok_or_else(|| {
         if let Some(foreign) = Foreign::sniff(start) {
-            return Failure::at(path, foreign);
+            return Failure::bad_file(path, foreign);
         }
         let (drawings, models) = (DrawingFormat::read_endings(), ModelFormat::read_endings());
-        Failure::at(
+        Failure::bad_file(
             path,
             format_args!(
                 "is neither a drawing ({drawings}), nor a project (.burgeon), nor a model ({models}), nor the structure of a \
@@ -86,7 +86,7 @@ pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
     })
 }
 
-/// What the first bytes say, if anything.
+/// Returns the kind that the first bytes indicate, if any.
 pub(crate) fn sniff(start: &[u8]) -> Option<Kind> {
     let drawing = DrawingFormat::sniff(start).map(Kind::Drawing);
     // Other programs keep archives, too.
@@ -96,7 +96,8 @@ pub(crate) fn sniff(start: &[u8]) -> Option<Kind> {
     drawing.or_else(|| ModelFormat::sniff(start).map(Kind::Model)).or_else(structure).or(project)
 }
 
-/// The format of standard input that is points alone. An OBJ may have its faces anywhere: it is taken for a model.
+/// Returns the format of standard input that holds points alone. An OBJ may have its faces anywhere, so it counts as a
+/// model.
 pub(crate) fn sniff_points(start: &[u8]) -> Option<CloudFormat> {
     let format = CloudFormat::sniff(start)?;
     let points = match format {
@@ -107,36 +108,36 @@ pub(crate) fn sniff_points(start: &[u8]) -> Option<CloudFormat> {
     points.then_some(format)
 }
 
-/// Opens what is there, with its first bytes, which are still to be read.
+/// Opens an existing file and returns its first bytes, which are still to be read.
 pub(crate) fn peek(path: &Path) -> Outcome<(Input, Vec<u8>)> {
     let mut input = open_bytes(path)?;
     let mut start = Vec::new();
     let read = Read::by_ref(&mut input).take(4096).read_to_end(&mut start);
     read.map_err(|e| Failure::io(path, "read", &e))?;
     if start.is_empty() {
-        return Err(Failure::at(path, "is empty; was it saved completely?"));
+        return Err(Failure::bad_file(path, "is empty; was it saved completely?"));
     }
     Ok((Box::new(BufReader::new(Cursor::new(start.clone()).chain(input))), start))
 }
 
-/// Bytes of a file, a pipe or standard input, whatever they are.
+/// Opens the bytes of a file, a pipe or standard input, whatever they are.
 pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     if inputs::is_stdin(path) {
         if TAKEN.swap(true, Ordering::Relaxed) {
             let line = "is asked for twice, but can be read only once; give one of the two as a file";
-            return Err(Failure::at(path, line));
+            return Err(Failure::bad_file(path, line));
         }
         return Ok(Box::new(BufReader::new(Stoppable(std::io::stdin()))));
     }
     if path.is_dir() {
-        return Err(Failure::at(path, "is a folder; name a file in it"));
+        return Err(Failure::bad_file(path, "is a folder; name a file in it"));
     }
     let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     Ok(Box::new(BufReader::new(Stoppable(file))))
 }
 
-/// A PLY whose header announces faces, or an OBJ with an `f` line.
+/// Whether the header of a PLY announces faces, or an OBJ has an `f` line.
 pub(crate) fn has_faces(path: &Path) -> bool {
     let Ok(mut file) = inputs::open(path) else { return false };
     let extension = extension(path).unwrap_or_default().to_ascii_lowercase();
@@ -158,18 +159,39 @@ fn ply_has_faces(start: &[u8]) -> bool {
     head.lines().any(|l| l.starts_with("element face") && !l.trim_end().ends_with(" 0"))
 }
 
+/// The format of a file that holds points alone, by its extension or, failing that, by its first bytes.
+pub(crate) fn points_alone(path: &Path) -> Outcome<Option<CloudFormat>> {
+    if inputs::is_stdin(path) || !path.is_file() {
+        return Ok(None);
+    }
+    let extension = extension(path).unwrap_or_default();
+    let format = CloudFormat::from_extension(extension);
+    let is_known = DrawingFormat::from_extension(extension).is_some()
+        || StructureFormat::from_extension(extension).is_some()
+        || extension.eq_ignore_ascii_case("burgeon");
+    // A table may be anything.
+    let is_table = ["csv", "txt"].iter().any(|e| extension.eq_ignore_ascii_case(e));
+    match format {
+        Some(CloudFormat::Ply | CloudFormat::Obj) => Ok(format.filter(|_| !has_faces(path))),
+        Some(_) if !is_table => Ok(format),
+        None if is_known || ModelFormat::from_extension(extension).is_some() => Ok(None),
+        _ => Ok(sniff_points(&peek(path)?.1)),
+    }
+}
+
 /// Opens a scan: its format by its extension or, failing that, by its first bytes.
 pub(crate) fn open_cloud(path: &Path) -> Outcome<(Input, CloudFormat)> {
     if let Some(format) = extension(path).and_then(CloudFormat::from_extension) {
         return Ok((open_bytes(path)?, format));
     }
     let (input, start) = peek(path)?;
-    if let Some(foreign) = Foreign::sniff_no_drawing(&start) {
-        return Err(Failure::at(path, foreign));
+    let found = CloudFormat::sniff(&start);
+    if let Some(foreign) = Foreign::sniff_no_drawing(&start).filter(|_| found != Some(CloudFormat::E57)) {
+        return Err(Failure::bad_file(path, foreign));
     }
-    let format = CloudFormat::sniff(&start).ok_or_else(|| {
-        let line = "is no scan that is read; end the name with .ply, .xyz, .txt, .pcd, .las or .obj";
-        Failure::at(path, line)
+    let format = found.ok_or_else(|| {
+        let line = "is no scan that is read; end the name with .ply, .xyz, .txt, .pcd, .las, .e57 or .obj";
+        Failure::bad_file(path, line)
     })?;
     Ok((input, format))
 }
@@ -181,10 +203,21 @@ pub(crate) fn read_cloud(
     axes: &ExportSpec,
     report: &mut Report,
 ) -> Outcome<PointCloud> {
-    burgeon::formats::read_cloud(input, format, axes, report).map_err(|e| Failure::at(path, e))
+    read_cloud_with_facts(path, (input, format), axes, report).map(|(cloud, _)| cloud)
 }
 
-/// The bytes of a file, at most `limit`.
+/// [`read_cloud`] with what the file says of itself.
+pub(crate) fn read_cloud_with_facts(
+    path: &Path,
+    (input, format): (Input, CloudFormat),
+    axes: &ExportSpec,
+    report: &mut Report,
+) -> Outcome<(PointCloud, CloudFacts)> {
+    burgeon::formats::read_cloud_with_facts(input, format, axes, report)
+        .map_err(|e| Failure::bad_file(path, e))
+}
+
+/// Reads the bytes of a file, at most `limit`.
 pub(crate) fn read_bytes(path: &Path, limit: u64) -> Outcome<Vec<u8>> {
     bytes_of(path, open_bytes(path)?, limit)
 }
@@ -198,39 +231,42 @@ fn bytes_of(path: &Path, input: Input, limit: u64) -> Outcome<Vec<u8>> {
             "is larger than {} MiB, too large for such a file; is it the right one?",
             limit >> 20
         );
-        return Err(Failure::at(path, line));
+        return Err(Failure::bad_file(path, line));
     }
     Ok(bytes)
 }
 
-/// The text of a small file, such as settings: at most 16 MiB.
+/// Reads the text of a small file, such as settings: at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Outcome<String> {
     text_of(path, open_bytes(path)?)
 }
 
-/// [`read_text`] of a file that is open already.
+/// Reads as [`read_text`] does, from a file that is open already.
 pub(crate) fn text_of(path: &Path, input: Input) -> Outcome<String> {
     let bytes = bytes_of(path, input, LIMITS.text)?;
     if let Some(foreign) = Foreign::sniff_no_drawing(&bytes) {
-        return Err(Failure::at(path, foreign));
+        return Err(Failure::bad_file(path, foreign));
     }
     String::from_utf8(bytes).map_err(|e| {
         let after = e.utf8_error().valid_up_to();
-        Failure::at(path, format_args!("after {after} bytes the text is not UTF-8; save it again as UTF-8"))
+        Failure::bad_file(
+            path,
+            format_args!("after {after} bytes the text is not UTF-8; save it again as UTF-8"),
+        )
     })
 }
 
-/// Reads the settings of a file that a person wrote: JSON by its extension, otherwise TOML.
+/// Reads a settings file that a person wrote: JSON by its extension, otherwise TOML.
 pub(crate) fn read_spec<T: Spec>(path: &Path) -> Outcome<T> {
     let text = read_text(path)?;
     let json = extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json"));
     if !json {
-        return burgeon::spec::from_toml(&text).map_err(|e| Failure::at(path, e));
+        return burgeon::spec::from_toml(&text).map_err(|e| Failure::bad_file(path, e));
     }
     let value = serde_json::from_str(&text)
-        .map_err(|e| Failure::at(path, format_args!("is not JSON: {}", plainly(&e.to_string()))))?;
-    let spec = burgeon::spec::from_json(&value).map_err(|e| Failure::at(path, e))?;
-    burgeon::spec::check(&spec).map_err(|fault| Failure::at(path, fault))?;
+        .map_err(|e| Failure::bad_file(path, format_args!("is not JSON: {}", plainly(&e.to_string()))))?;
+    let spec = burgeon::spec::from_json(&value).map_err(|e| Failure::bad_file(path, e))?;
+    burgeon::spec::check(&spec).map_err(|fault| Failure::bad_file(path, fault))?;
     Ok(spec)
 }
 
@@ -239,55 +275,55 @@ pub(crate) fn read_project(path: &Path, input: Input) -> Outcome<Document> {
     let mut bytes = Vec::new();
     let bounded = input.take(MAX_PROJECT_BYTES as u64 + 1).read_to_end(&mut bytes);
     bounded.map_err(|e| Failure::io(path, "read", &e))?;
-    // A project is an archive; others may be named so.
+    // A project is an archive; other files may have its name.
     let foreign = Foreign::sniff(&bytes).filter(|f| !matches!(f, Foreign::Project | Foreign::Zip));
     if let Some(foreign) = foreign {
-        return Err(Failure::at(path, foreign));
+        return Err(Failure::bad_file(path, foreign));
     }
-    document::read_project(&bytes).map_err(|e| Failure::at(path, e))
+    document::read_project(&bytes).map_err(|e| Failure::bad_file(path, e))
 }
 
-/// What is said of a project without plants.
+/// Message about a project without plants.
 pub(crate) const EMPTY: &str = "is an empty project: it has no plant; add one in the Studio";
 
-/// The one drawing of a project, as if it had been read from a file of strokes, and its plant.
+/// Returns the only drawing of a project, as if it had been read from a file of strokes, and its plant.
 pub(crate) fn drawing_of<'a>(
     path: &Path,
     document: &'a Document,
 ) -> Outcome<(ReadDrawing, &'a DocumentPlant)> {
     if document.plants().is_empty() {
-        return Err(Failure::at(path, EMPTY));
+        return Err(Failure::bad_file(path, EMPTY));
     }
     let [plant] = document.plants() else {
         let line = format!(
             "is a scene of {} plants, not one drawing; `burgeon sketch` makes all of them",
             document.plants().len()
         );
-        return Err(Failure::at(path, line));
+        return Err(Failure::bad_file(path, line));
     };
     if plant.settings().sketch().is_none() {
         let line =
             format!("holds a {}, not a drawing; `burgeon sketch` makes it", plant.settings().maker.word());
-        return Err(Failure::at(path, line));
+        return Err(Failure::bad_file(path, line));
     }
     if plant.strokes().is_empty() {
-        return Err(Failure::at(path, "holds no stroke; open it in the Studio and draw"));
+        return Err(Failure::bad_file(path, "holds no stroke; open it in the Studio and draw"));
     }
     Ok((ReadDrawing { drawing: plant.drawing(), warnings: Vec::new() }, plant))
 }
 
-/// Axes of models: +Y up if nothing was asked for.
+/// Returns the axes of models: +Y up by default.
 pub(crate) fn axes(up: impl Into<Option<UpAxis>>, unit: Unit) -> ExportSpec {
     ExportSpec { up: up.into().unwrap_or_default(), unit }
 }
 
-/// Reads a model, with what its reader has to say.
+/// Reads a model, with the messages of its reader.
 pub(crate) fn read_model(path: &Path, axes: &ExportSpec) -> Outcome<(Model, ModelFormat, Vec<Warning>)> {
     let (input, kind) = open(path)?;
     read_opened_model(path, input, kind, axes)
 }
 
-/// [`read_model`] of a file that is open already.
+/// Reads as [`read_model`] does, from a file that is open already.
 pub(crate) fn read_opened_model(
     path: &Path,
     input: Input,
@@ -300,9 +336,9 @@ pub(crate) fn read_opened_model(
         Kind::Drawing(format) => {
             let start = input.fill_buf().map_err(|e| Failure::io(path, "read", &e))?;
             if let Some(foreign) = Foreign::sniff(start) {
-                return Err(Failure::at(path, foreign));
+                return Err(Failure::bad_file(path, foreign));
             }
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 path,
                 format_args!(
                     "is a drawing ({}), not a model; `burgeon sketch` makes a model of it",
@@ -315,10 +351,13 @@ pub(crate) fn read_opened_model(
             let line = format_args!(
                 "is the structure of a plant ({name}), not a model; `burgeon shape` makes a model of it"
             );
-            return Err(Failure::at(path, line));
+            return Err(Failure::bad_file(path, line));
         }
         Kind::Project => {
-            return Err(Failure::at(path, "is a project, not a model; `burgeon sketch` makes a model of it"));
+            return Err(Failure::bad_file(
+                path,
+                "is a project, not a model; `burgeon sketch` makes a model of it",
+            ));
         }
     };
     let mut report = Report::default();
@@ -326,14 +365,14 @@ pub(crate) fn read_opened_model(
     let named = |file: SideFile<'_>| resolve(path, file);
     let model = burgeon::formats::read_model(input, format, &stem(path), axes, &named, &mut report);
     let model = model.map_err(|e| match e.fault {
-        // It says itself which file names what.
+        // The reason itself names the files.
         FileFault::Refused { why } => Failure::Bad(why),
-        _ => Failure::at(path, e),
+        _ => Failure::bad_file(path, e),
     });
     Ok((model?, format, report.warnings))
 }
 
-/// What a glTF names, read or not: only some of its pictures are.
+/// Files that a glTF names, read or not: only some of its pictures are.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct GltfFiles {
@@ -347,12 +386,13 @@ struct GltfFile {
     uri: Option<String>,
 }
 
-/// Keeps the files that a glTF names from being written over. The input starts anew.
+/// Protects the files that a glTF names from being overwritten. The input starts anew.
 fn announce_gltf(model: &Path, mut input: Input) -> Outcome<Input> {
     let failed = |e: &std::io::Error| Failure::io(model, "read", e);
     let mut start = Vec::new();
     input.by_ref().take(20).read_to_end(&mut start).map_err(|e| failed(&e))?;
-    // A binary one has its JSON first, after 20 bytes: the mark, version and length, and the JSON's own length and mark.
+    // A binary one has its JSON first, after 20 bytes: the magic, version and length, and the JSON's own length and
+    // type.
     let (from, length) = match start.as_slice() {
         &[b'g', b'l', b'T', b'F', _, _, _, _, _, _, _, _, a, b, c, d, ..] => {
             (20, u64::from(u32::from_le_bytes([a, b, c, d])))
@@ -360,7 +400,7 @@ fn announce_gltf(model: &Path, mut input: Input) -> Outcome<Input> {
         _ => (0, MAX_MODEL_BYTES),
     };
     input.by_ref().take(length).read_to_end(&mut start).map_err(|e| failed(&e))?;
-    // What is wrong with it the reader of models says.
+    // The reader of models reports any fault.
     let files: GltfFiles =
         start.get(from..).and_then(|json| serde_json::from_slice(json).ok()).unwrap_or_default();
     let names = files.buffers.iter().chain(&files.images).filter_map(|f| f.uri.as_deref());
@@ -372,10 +412,10 @@ fn announce_gltf(model: &Path, mut input: Input) -> Outcome<Input> {
     Ok(Box::new(BufReader::new(Cursor::new(start).chain(input))))
 }
 
-/// Files that are named by one: the reader of models refuses one that names more.
+/// Most files that one file names: the reader of models refuses more.
 const MOST_NAMED: usize = 4096;
 
-/// Keeps the textures that a material file names from being written over.
+/// Protects the textures that a material file names from being overwritten.
 fn announce_textures(library: &Path, text: &[u8]) {
     let text = String::from_utf8_lossy(text);
     let mut names = BTreeSet::new();
@@ -390,7 +430,8 @@ fn announce_textures(library: &Path, text: &[u8]) {
     names.into_iter().take(MOST_NAMED).for_each(|name| inputs::announce_named(library, name));
 }
 
-/// A file that a model, or its file of materials, names. What need not be there may be missing; what must not be read ends it.
+/// Reads a file that a model, or its file of materials, names. An optional file may be missing; a forbidden one ends
+/// the command.
 fn resolve(model: &Path, file: SideFile<'_>) -> Result<Vec<u8>, NoFile> {
     let library = file.by.map(|by| Named { naming: model, name: by }.path());
     let naming = library.as_deref().unwrap_or(model);
@@ -405,38 +446,43 @@ fn resolve(model: &Path, file: SideFile<'_>) -> Result<Vec<u8>, NoFile> {
     Ok(bytes)
 }
 
-/// The format of a model's file name, if we write it.
+/// Returns the format of a model's file name, if we write it.
 pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
     let format = extension(path).and_then(ModelFormat::from_extension);
     format.filter(|format| format.row().is_written()).ok_or_else(|| {
         let endings = ModelFormat::written_endings();
-        Failure::at(path, format_args!("models are written as {endings}; end the name with one of them"))
+        Failure::bad_file(
+            path,
+            format_args!("models are written as {endings}; end the name with one of them"),
+        )
     })
 }
 
-/// The format of a plant's file name, if we write it.
+/// Returns the format of a plant's file name, if we write it.
 pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
-    // A table of cylinders has an ending of two words, as a table may be anything.
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    if name.ends_with(&format!(".{}", StructureFormat::Qsm.extension())) {
-        return Ok(PlantFormat::Structure(StructureFormat::Qsm));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if let Some(format) = PlantFormat::from_two_words(&name) {
+        return Ok(format);
     }
     match extension(path).and_then(PlantFormat::from_extension) {
         Some(format @ (PlantFormat::Structure(_) | PlantFormat::Robot(_))) => Ok(format),
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
-        None => Err(Failure::at(path, format!("{}; end the name with one of them", PlantFormat::endings()))),
+        None => {
+            Err(Failure::bad_file(path, format!("{}; end the name with one of them", PlantFormat::endings())))
+        }
     }
 }
 
-/// Where a model or plant goes.
+/// Target of a model or plant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
-    /// The option that asks for it.
+    /// The option that requests it.
     pub(crate) by: &'a str,
     pub(crate) path: &'a Path,
-    /// One of a batch, by a name of [`crate::names`]: its textures are `NAME--MATERIAL.png`, which no other's file can be.
+    /// Whether it is one of a batch, by a name of [`crate::names`]: its textures are `NAME--MATERIAL.png`, a name that
+    /// no other output can have.
     pub(crate) of_many: bool,
-    /// How a .glb is packed.
+    /// Packing of a .glb.
     pub(crate) packing: Option<Packing>,
 }
 
@@ -445,31 +491,31 @@ impl<'a> Goal<'a> {
         Self { by, path, of_many: false, packing: None }
     }
 
-    /// How the files beside the model's own are called: by its name, and textures of one of many by a longer one.
-    fn stems(&self) -> (String, String) {
+    /// Returns the names of the files next to the model's own: its name, and a longer one for textures in a batch.
+    pub(crate) fn stems(&self) -> (String, String) {
         let name = stem(self.path);
         let textures = if self.of_many { format!("{name}-") } else { name.clone() };
         (name, textures)
     }
 
-    fn beside(&self, name: &str) -> PathBuf {
+    fn sibling(&self, name: &str) -> PathBuf {
         self.path.with_file_name(name)
     }
 
-    /// In words, what refers to a file that the model's own names.
+    /// Describes a file that the model's own names.
     fn by_way_of(&self, what: Beside) -> String {
         format!("{} of {}", what.phrase(), self.by)
     }
 }
 
-/// The format of a model's file, planned as -o; what is known to lie beside it is planned.
+/// Returns the format of a model's file, and plans it as -o, with the known files next to it.
 pub(crate) fn plan_model(outputs: &mut Outputs, path: &Path) -> Outcome<ModelFormat> {
     let format = writable(path)?;
     plan_beside(outputs, Goal::new("-o", path), format)?;
     Ok(format)
 }
 
-/// [`plan_model`] of a plant and its coarser copies.
+/// Plans as [`plan_model`] does, for a plant and its coarser copies.
 pub(crate) fn plan_plant(outputs: &mut Outputs, path: &Path, lods: u32) -> Outcome<PlantFormat> {
     let format = plant_writable(path)?;
     let PlantFormat::Model(model) = format else { return Ok(format) };
@@ -482,10 +528,10 @@ pub(crate) fn plan_plant(outputs: &mut Outputs, path: &Path, lods: u32) -> Outco
     Ok(format)
 }
 
-// Textures are known when the plant is.
+// Textures are known only when the plant is.
 fn plan_beside(outputs: &mut Outputs, goal: Goal<'_>, format: ModelFormat) -> Outcome {
     for (what, name) in names_beside(format, &stem(goal.path)) {
-        outputs.plan(&goal.by_way_of(what), &goal.beside(&name))?;
+        outputs.plan(&goal.by_way_of(what), &goal.sibling(&name))?;
     }
     Ok(())
 }
@@ -496,16 +542,16 @@ pub(crate) fn lod(path: &Path, level: usize) -> PathBuf {
     path.with_file_name(format!("{}-lod{level}.{extension}", stem(path)))
 }
 
-/// What the writer of a plant has to say.
+/// Messages of the writer of a plant.
 #[derive(Debug, Default)]
 pub(crate) struct PlantWritten {
     pub(crate) warnings: Vec<Warning>,
-    /// Of a robot: how it is built.
+    /// For a robot: its structure.
     pub(crate) robot: Option<RobotReport>,
 }
 
 impl PlantWritten {
-    /// Adds it to the report of the plant.
+    /// Adds the messages to the report of the plant.
     pub(crate) fn tell(self, item: &mut ItemReport) {
         item.warnings.extend(self.warnings.iter().map(ToString::to_string));
         item.robot = self.robot.or(item.robot.take());
@@ -541,7 +587,7 @@ pub(crate) fn write_plant(
     }
 }
 
-/// Writes a plant as bodies and joints, with their meshes beside it.
+/// Writes a plant as bodies and joints, with their meshes in separate files.
 fn write_robot(
     outputs: &mut Outputs,
     goal: Goal<'_>,
@@ -553,7 +599,7 @@ fn write_robot(
     let made = burgeon::write_robot(plant, format, &stem, &Run::plain(), &mut report);
     let robot = made.map_err(|e| match e {
         RobotError::Write(e) => output::write_failed(goal.path, e),
-        e => Failure::at(goal.path, e),
+        e => Failure::bad_file(goal.path, e),
     })?;
     write_files(outputs, goal, Ok(robot.files))?;
     Ok(PlantWritten { warnings: report.warnings, robot: Some(robot.report) })
@@ -580,11 +626,11 @@ pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args:
 pub(crate) fn drawing_writable(path: &Path) -> Outcome {
     match extension(path) {
         Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(()),
-        _ => Err(Failure::at(path, "drawings are written as .svg; end the name with it")),
+        _ => Err(Failure::bad_file(path, "drawings are written as .svg; end the name with it")),
     }
 }
 
-/// Writes what a person would have drawn of a plant.
+/// Writes a line drawing of a plant.
 pub(crate) fn write_drawing(outputs: &mut Outputs, path: &Path, name: &str, lines: &[DrawnLine]) -> Outcome {
     let lines = lines.iter().map(|line| (line.kind.word(), line.points.clone()));
     let drawing = burgeon::drawing_of(name, lines);
@@ -596,7 +642,7 @@ fn field_axes(args: &AxesArgs) -> ExportSpec {
     axes(args.up.unwrap_or(UpAxis::Z), args.unit)
 }
 
-/// Writes a model with the files that its own names.
+/// Writes a model and the files that its own names.
 pub(crate) fn write_model(
     outputs: &mut Outputs,
     goal: Goal<'_>,
@@ -623,7 +669,7 @@ pub(crate) fn write_model(
     Ok(report.warnings)
 }
 
-/// Writes what `write` gives, a binary glTF, in a format of its family.
+/// Writes the result of `write`, a binary glTF, in a format of its family.
 pub(crate) fn write_gltf(
     outputs: &mut Outputs,
     goal: Goal<'_>,
@@ -640,10 +686,14 @@ pub(crate) fn write_gltf(
     write_files(outputs, goal, files)
 }
 
-fn write_files(outputs: &mut Outputs, goal: Goal<'_>, files: Result<ModelFiles, WriteError>) -> Outcome {
+pub(crate) fn write_files(
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
+    files: Result<ModelFiles, WriteError>,
+) -> Outcome {
     let files = files.map_err(|e| output::write_failed(goal.path, e))?;
     for file in &files.beside {
-        let (by, path) = (goal.by_way_of(file.what), goal.beside(&file.name));
+        let (by, path) = (goal.by_way_of(file.what), goal.sibling(&file.name));
         outputs.write(&by, &path, |out| Ok(out.write_all(&file.bytes)?))?;
     }
     outputs.write(goal.by, goal.path, |out| Ok(out.write_all(&files.own)?))

@@ -12,35 +12,36 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{checks, files, poses, report, say, stages, table};
 
-/// A law as the report tells it, lengths in metres.
+/// A law in the report, lengths in metres.
 #[derive(Debug, Serialize)]
 struct LawReport {
     organ: String,
     region: usize,
     axis: Quantity,
     form: Form,
-    /// The days determine it; else it is a straight line, or the nearest logistic, and drives nothing.
+    /// Whether the days determine it; otherwise it is a straight line, or the nearest logistic, and sets no pace.
     determined: bool,
     #[serde(rename = "K")]
     k: f64,
     p0: f64,
     r: f64,
     offset: f64,
-    /// On day 0, and what it tends to: K and p0 with the constant under the curve; none where the days tell no end.
+    /// Value on day 0, and the asymptote: K and p0 with the constant under the curve; `None` where the days give no
+    /// end.
     first_m: f64,
     final_m: Option<f64>,
     /// Standard errors of `final_m` and `first_m`.
     value_errors_m: Option<[f64; 2]>,
-    /// Of K, p0 and r.
+    /// Standard errors of K, p0 and r.
     standard_errors: Option<[f64; 3]>,
     r2: f64,
     r2_adjusted: Option<f64>,
     loo_rmse: Option<f64>,
     /// Leave-one-out error of a straight line.
     straight_rmse: Option<f64>,
-    /// Error of each value predicted by the one before it.
+    /// Error of predicting each value by the one before it.
     last_rmse: Option<f64>,
-    /// On a bound of the search: the series determines no logistic.
+    /// Whether it lies on a bound of the search: then the series determines no logistic.
     on_bound: bool,
 }
 
@@ -70,7 +71,7 @@ impl LawReport {
     }
 }
 
-/// Mean distances from the scan that was left out to what was made of the others, and back.
+/// Mean distances from the scan that was left out to the result of the others, and back.
 #[derive(Debug, Serialize)]
 struct Distance {
     mean_mm: f64,
@@ -86,9 +87,9 @@ impl From<&ShapeError> for Distance {
 #[derive(Debug, Serialize)]
 struct RivalReport {
     way: &'static str,
-    /// After the best rigid move.
+    /// Distance after the best rigid motion.
     aligned: Distance,
-    /// In the coordinates of the scanner.
+    /// Distance in the coordinates of the scanner.
     scanner: Distance,
 }
 
@@ -97,7 +98,7 @@ struct RivalReport {
 struct TrialReport {
     day: f64,
     extrapolated: bool,
-    /// The other days determine a law.
+    /// Whether the other days determine a law.
     law: bool,
     ways: Vec<RivalReport>,
 }
@@ -113,23 +114,23 @@ impl From<&Trial> for TrialReport {
     }
 }
 
-/// What `fit` adds to the report.
+/// Additions of `fit` to the report.
 #[derive(Debug, Serialize)]
 struct FitReport {
     #[serde(flatten)]
     run: RunReport,
     laws: Vec<LawReport>,
     stages: Vec<stages::StageReport>,
-    /// How plant and organs moved between scans.
+    /// Motion of plant and organs between scans.
     poses: Vec<poses::PoseReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     leave_one_out: Option<Vec<TrialReport>>,
-    /// Whether groups grow alike; of a growth table with --by.
+    /// Whether groups grow alike; for a growth table with --by.
     #[serde(skip_serializing_if = "Option::is_none")]
     groups: Option<table::GroupReport>,
 }
 
-/// What was read and fitted.
+/// Input and fits.
 struct Fitted {
     law: GrowthLaw,
     warnings: Vec<String>,
@@ -138,13 +139,13 @@ struct Fitted {
     trials: Option<Vec<Trial>>,
     offset_m: Option<[f64; 3]>,
     read_ms: f64,
-    /// What tells groups apart.
+    /// Comparison of groups.
     groups: Option<table::GroupReport>,
     fit_ms: f64,
 }
 
 impl From<table::TableFit> for Fitted {
-    /// A table has no scans.
+    /// Makes the result of a table, which has no scans.
     fn from(table: table::TableFit) -> Self {
         let table::TableFit { law, warnings, groups, read_ms, fit_ms } = table;
         let (stages, poses, trials, offset_m) = (vec![], vec![], None, None);
@@ -231,7 +232,7 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
     });
     let (settled, law) = made.map_err(Failure::bloom(&args.input))?;
     if law.laws.is_empty() {
-        return Err(Failure::at(
+        return Err(Failure::bad_file(
             &args.input,
             "no organ is there on 3 days; label organs by hand (organ = \"leaf-1\") or add stages",
         ));
@@ -248,7 +249,7 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
     Ok(Fitted {
         law,
         warnings,
-        offset_m: loaded.origin.told(&loaded.axes),
+        offset_m: loaded.origin.offset_in(&loaded.axes),
         stages: loaded.told,
         poses: settled.steps.iter().map(poses::PoseReport::from).collect(),
         trials: trials.transpose().map_err(Failure::bloom(&args.input))?,

@@ -12,7 +12,7 @@ use burgeon::growth::{
 use burgeon::skin::SkinSpec;
 use burgeon::{
     HeightError, ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError,
-    TreeOptions, TreeSpec, age_of_height, make_tree, method_word, read_tree_spec,
+    TreeOptions, TreeSpec, age_of_height, make_tree, method_word, read_tree_spec, tree_of_dbh,
 };
 
 use crate::args::{GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
@@ -62,12 +62,12 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
     outputs.check()?;
     let seed = Seed::new(args.seed);
-    set_age(args, &mut spec, seed, &machine)?;
+    let height_m = set_age(args, &mut spec, seed, &machine)?;
     let options = TreeOptions {
         skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
         leaf,
         levels: args.surface.export.levels(format),
-        height_m: args.growth.height,
+        height_m,
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
@@ -82,7 +82,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         item.plant = Some(grown.plant.measure());
     }
     let mut items = vec![item];
-    checks::accept(&items, &args.checks).map_err(|f| f.of(Path::new(&named(args))))?;
+    checks::accept(&items, &args.checks).map_err(|f| f.in_file(Path::new(&named(args))))?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let form = Form::new(path, format, &args.surface.export, &args.axes);
         let whole = Whole { plant: &grown.plant, model: model.clone(), levels };
@@ -107,7 +107,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let mut run = RunReport::new("grow", args.seed);
     run.engine = args.surface.export.report();
     run.input.path = named(args);
-    run.input.offset_m = origin.told(&files::axes(args.axes.up, args.axes.unit));
+    run.input.offset_m = origin.offset_in(&files::axes(args.axes.up, args.axes.unit));
     run.ok = 1;
     run.items = items;
     report::finish(&run, &args.common, outputs)?;
@@ -121,25 +121,32 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     Ok(())
 }
 
-/// The age at which the tree has the height of --height.
-fn set_age(args: &GrowArgs, spec: &mut TreeSpec, seed: Seed, machine: &Machine) -> Outcome {
-    let Some(height) = args.growth.height else { return Ok(()) };
+/// Sets the age at which the tree has the height of --height or the diameter of --dbh; returns the height to which it is
+/// scaled.
+fn set_age(args: &GrowArgs, spec: &mut TreeSpec, seed: Seed, machine: &Machine) -> Outcome<Option<f64>> {
     let free = spec.obstacles.is_empty();
-    args.given.only_if(free, &["height"], "trees without obstacles", "this one would meet its own")?;
-    let age = age_of_height(spec, seed, height, &machine.run());
-    spec.age = age.map_err(|e| match e {
+    args.given.only_if(free, &["height", "dbh"], "trees without obstacles", "this one would meet its own")?;
+    let fail = |spec: &TreeSpec, option: &str, e: HeightError| match e {
         HeightError::Tree(e) => failure(args, spec, e),
-        e => Failure::at(Path::new(&named(args)), format_args!("--height: {e}")),
-    })?;
-    Ok(())
+        e => Failure::bad_file(Path::new(&named(args)), format_args!("{option}: {e}")),
+    };
+    let run = machine.run();
+    if let Some(dbh) = args.growth.dbh {
+        let found = tree_of_dbh(spec, seed, dbh, &run).map_err(|e| fail(spec, "--dbh", e))?;
+        spec.age = found.age;
+        return Ok(Some(found.height_m));
+    }
+    let Some(height) = args.growth.height else { return Ok(None) };
+    spec.age = age_of_height(spec, seed, height, &run).map_err(|e| fail(spec, "--height", e))?;
+    Ok(Some(height))
 }
 
-/// Fails on options that nothing uses.
+/// Fails on unused options.
 fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
     given.check_picture(args.png.is_some(), &args.picture)?;
     let seen = Seen::new(format, args.png.as_ref(), &args.common);
-    // What a drawing shows is what its meshes show.
+    // A drawing shows the meshes.
     given.check_surface(Seen { report: seen.report || args.drawing.is_some(), ..seen })?;
     let written = args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes));
     args.surface.check_used(given, format, args.png.is_some())?;
@@ -171,7 +178,7 @@ fn failure(args: &GrowArgs, spec: &TreeSpec, error: TreeError) -> Failure {
     }
     // Meshes of --obstacle come after those of the spec.
     let own = spec.obstacles.len() - args.growth.obstacle.len();
-    let at = |error: &dyn std::fmt::Display| Failure::at(Path::new(&named(args)), error);
+    let at = |error: &dyn std::fmt::Display| Failure::bad_file(Path::new(&named(args)), error);
     match error {
         TreeError::Growth(GrowthError::Obstacle { obstacle, fault, .. }) if obstacle >= own => {
             let path = &args.growth.obstacle[obstacle - own];
@@ -188,7 +195,7 @@ fn failure(args: &GrowArgs, spec: &TreeSpec, error: TreeError) -> Failure {
     }
 }
 
-/// The spec as the options make it.
+/// Returns the spec with the options applied.
 fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<TreeSpec> {
     let mut spec = match &args.what {
         Some(what) => read_spec(what, told)?,
@@ -228,7 +235,7 @@ fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Tre
         let (vertices, triangles) = model.triangles();
         if triangles.is_empty() {
             let why = "has no faces, so there is nothing to grow around; export the obstacle as a mesh";
-            return Err(Failure::at(path, why));
+            return Err(Failure::bad_file(path, why));
         }
         spec.obstacles.push(Obstacle::Mesh { vertices, triangles });
     }
@@ -240,7 +247,7 @@ fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Tre
     Ok(spec)
 }
 
-/// The leaf of --leaf-template, or the one that the spec names, beside the spec.
+/// Returns the leaf of --leaf-template, or the one that the spec names, next to the spec.
 fn leaf_of(args: &GrowArgs, spec: &mut TreeSpec, machine: &Machine) -> Outcome<Option<LeafTemplate>> {
     let named = spec.blade.file.take();
     let path = match (&args.growth.leaf_template, named) {
@@ -253,7 +260,7 @@ fn leaf_of(args: &GrowArgs, spec: &mut TreeSpec, machine: &Machine) -> Outcome<O
     path.map(|p| crate::leaf_data::template_of(&p, args.seed, machine)).transpose()
 }
 
-/// A species whose leaves a plant that did not grow by it gets (`--leaves`).
+/// Reads the species whose leaves a plant that did not grow by it gets (`--leaves`).
 pub(crate) fn read_leaves(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     let spec = read_spec(what, told)?;
     if spec.bare || spec.blade.file.is_some() {
@@ -262,7 +269,7 @@ pub(crate) fn read_leaves(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     Ok(spec)
 }
 
-/// A preset by its key, or a file.
+/// Reads a preset by its key, or a file.
 pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     let key = what.to_str().unwrap_or_default();
     let preset = Preset::find(key).filter(|_| !what.is_file());
@@ -278,7 +285,7 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     spec_of(what, &files::read_text(what)?, told)
 }
 
-/// The spec of a text that was read from `what`.
+/// Reads the spec of a text that was read from `what`.
 pub(crate) fn spec_of(what: &Path, text: &str, told: &mut Report) -> Outcome<TreeSpec> {
     let (warnings, failed) = (RefCell::new(Vec::new()), RefCell::new(None));
     let open = |name: &str| match named_mesh(what, name, &mut warnings.borrow_mut()) {
@@ -289,11 +296,11 @@ pub(crate) fn spec_of(what: &Path, text: &str, told: &mut Report) -> Outcome<Tre
         }
     };
     let spec = read_tree_spec(text, &open);
-    // What is wrong with the file, rather than that it is of no use.
+    // Reports the fault of the file, rather than that it is useless.
     if let Some(failure) = failed.into_inner() {
         return Err(failure);
     }
-    let mut spec = spec.map_err(|e| Failure::at(what, e))?;
+    let mut spec = spec.map_err(|e| Failure::bad_file(what, e))?;
     if spec.name == TreeSpec::default().name {
         spec.name = files::stem(what);
     }
@@ -301,7 +308,7 @@ pub(crate) fn spec_of(what: &Path, text: &str, told: &mut Report) -> Outcome<Tre
     Ok(spec)
 }
 
-/// A mesh or cloud that a spec names, beside the spec; none of what is no such file. In metres, +Y up.
+/// Reads a mesh or cloud that a spec names, next to the spec; `None` if there is no such file. In metres, +Y up.
 fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> Outcome<Option<NamedMesh>> {
     let path = inputs::named_path(spec, name)?;
     let known = |e| CloudFormat::from_extension(e).is_some() || ModelFormat::from_extension(e).is_some();
@@ -309,7 +316,7 @@ fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> 
         return Ok(None);
     }
     let axes = ExportSpec::default();
-    if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) =
+    if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las | CloudFormat::E57)) =
         files::extension(&path).and_then(CloudFormat::from_extension)
     {
         let mut report = Report::default();
@@ -360,7 +367,7 @@ fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
     }
 }
 
-/// --step, --influence and --kill for the methods that have them.
+/// Applies --step, --influence and --kill to the methods that have them.
 fn distances(args: &PointsArgs, metres: f64, method: &mut Method) -> Outcome {
     let [step_m, influence_m, kill_m] = [args.step, args.influence, args.kill].map(|x| Some(x? * metres));
     if [step_m, influence_m, kill_m].iter().all(Option::is_none) {

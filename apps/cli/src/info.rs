@@ -1,13 +1,13 @@
-//! `burgeon info`: what is in a file.
+//! `burgeon info`: the contents of a file.
 
 use std::path::Path;
 
-use burgeon::Report;
-use burgeon::formats::Room;
 use burgeon::formats::{
-    DrawingFormat, DrawingSummary, ModelSummary, ReadStructure, StructureTally, read_drawings,
+    CloudFacts, CloudFormat, DrawingFormat, DrawingSummary, ModelSummary, ReadStructure, Room,
+    StructureTally, read_drawings,
 };
 use burgeon::plant::Measures;
+use burgeon::{Report, UpAxis};
 use serde::Serialize;
 
 use crate::args::{InfoArgs, StructureArgs};
@@ -17,14 +17,18 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{report, say, structure};
 
-/// Drawings of a file that are listed one by one.
+/// Most drawings of a file that are listed one by one.
 const LISTED: usize = 20;
-/// Warnings of a file with many drawings that are listed one by one.
+/// Most warnings of a file with many drawings that are listed one by one.
 const WARNINGS: usize = 50;
 
 pub(crate) fn info(args: &InfoArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let outputs = Outputs::new(&[("--report", args.common.report.as_ref())], &[&args.input])?;
+    if let Some(format) = files::points_alone(&args.input)? {
+        let cloud = Cloud::read(args, format)?;
+        return tell(args, &machine, outputs, format.word(), Content::Cloud(cloud));
+    }
     let (input, kind) = files::open(&args.input)?;
     let has_axes = match kind {
         Kind::Model(format) => format.holds(Room::Axes),
@@ -35,13 +39,11 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
     if !matches!(kind, Kind::Structure(_)) {
         StructureArgs::refuse(&args.given, "it is no such file")?;
     }
-    // A pipe has no size.
-    let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());
     let (format, content) = match kind {
         Kind::Model(_) => {
             let axes = files::axes(args.axes.up, args.axes.unit);
             let (model, format, warnings) = files::read_opened_model(&args.input, input, kind, &axes)?;
-            (format.word(), Content::Model(ModelSummary::of(&model, &warnings)))
+            (format.word(), Content::Model(ModelSummary::from_model(&model, &warnings)))
         }
         Kind::Structure(format) => {
             let mut told = Report::default();
@@ -54,7 +56,7 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
             let document = files::read_project(&args.input, input)?;
             let mut out = Drawings::default();
             for plant in document.plants().iter().filter(|p| p.settings().sketch().is_some()) {
-                out.add(DrawingSummary::of(&plant.drawing(), &[]));
+                out.add(DrawingSummary::from_drawing(&plant.drawing(), &[]));
             }
             let plants = document.plants().iter().map(|p| PlantInfo {
                 name: p.settings().name.clone(),
@@ -69,6 +71,19 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
             ("project", Content::Drawings(out))
         }
     };
+    tell(args, &machine, outputs, format, content)
+}
+
+/// Says what is in the file, and writes the report.
+fn tell(
+    args: &InfoArgs,
+    machine: &Machine,
+    outputs: Outputs,
+    format: &'static str,
+    content: Content,
+) -> Outcome {
+    // A pipe has no size.
+    let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());
     let path = args.input.display().to_string();
     let info = Info { schema: "burgeon.info/1", version: burgeon::VERSION, path, bytes, format, content };
     report::finish(&info, &args.common, outputs)?;
@@ -83,7 +98,7 @@ struct Info {
     schema: &'static str,
     version: &'static str,
     path: String,
-    /// Null for standard input and pipes.
+    /// Size; null for standard input and pipes.
     bytes: Option<u64>,
     format: &'static str,
     #[serde(flatten)]
@@ -96,19 +111,74 @@ enum Content {
     Model(ModelSummary),
     Drawings(Drawings),
     Structure(Structure),
+    Cloud(Cloud),
+}
+
+/// The points of a scan.
+#[derive(Serialize)]
+struct Cloud {
+    #[serde(flatten)]
+    facts: CloudFacts,
+    /// The unit that is taken for that of the file, and whether it was asked for.
+    taken_unit: &'static str,
+    is_unit_asked: bool,
+    warnings: Vec<String>,
+}
+
+impl Cloud {
+    fn read(args: &InfoArgs, format: CloudFormat) -> Outcome<Self> {
+        StructureArgs::refuse(&args.given, "it is no such file")?;
+        let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
+        let mut told = Report::default();
+        let opened = (files::open_bytes(&args.input)?, format);
+        let (_, facts) = files::read_cloud_with_facts(&args.input, opened, &axes, &mut told)?;
+        let warnings = told.warnings.iter().map(ToString::to_string).collect();
+        let is_unit_asked = args.given.has("unit");
+        Ok(Self { facts, taken_unit: args.axes.unit.word(), is_unit_asked, warnings })
+    }
+
+    fn lines(&self, out: &mut Vec<String>) {
+        let f = &self.facts;
+        let detail = if f.detail.is_empty() { String::new() } else { format!(" ({})", f.detail) };
+        out.push(format!("  {}{detail}", say::counted(f.points, "point", "points")));
+        let size = [0, 1, 2].map(|k| short(f.max[k] - f.min[k])).join(" x ");
+        let unit = match &f.unit {
+            Some(unit) => format!("in {unit}, by its coordinate system"),
+            None if self.is_unit_asked => format!("in {}, as asked", self.taken_unit),
+            None => format!("in {} by its size, a guess; --unit says it", f.unit_guess),
+        };
+        out.push(format!("  {size} (x, y, z of the file), {unit}"));
+        let place = |p: [f64; 3]| p.map(|x| format!("{x:.3}")).join(", ");
+        out.push(format!("  from ({}) to ({})", place(f.min), place(f.max)));
+        out.push(format!("  columns: {}", f.columns.join(", ")));
+        if !f.has_colors && f.columns.iter().any(|c| c.eq_ignore_ascii_case("red")) {
+            out.push("  all colours are black: they count as none".into());
+        }
+        for class in &f.classes {
+            let used = if class.used_as.is_empty() { String::new() } else { format!(": {}", class.used_as) };
+            let points = say::counted(class.points, "point", "points");
+            out.push(format!("  class {} ({}): {points}{used}", class.class, class.name));
+        }
+        if let Some(system) = &f.coordinate_system {
+            out.push(format!("  coordinate system: {system}"));
+        }
+        if let Some(step) = f.step_mm {
+            out.push(format!("  coordinates in steps of {} mm", short(step)));
+        }
+    }
 }
 
 /// The structure of plants.
 #[derive(Serialize)]
 struct Structure {
-    /// Rows, vertices or elements, and those of which something is in a plant.
+    /// Number of rows, vertices or elements, and of those used in a plant.
     entries: u64,
     used: u64,
     plants: Vec<MeasuredPlant>,
     warnings: Vec<String>,
 }
 
-/// One plant of a file of structure, as it stands there.
+/// One plant of a file of structure, in its place in the file.
 #[derive(Serialize)]
 struct MeasuredPlant {
     name: String,
@@ -172,7 +242,7 @@ struct Drawings {
     points: usize,
     failed: usize,
     first: Vec<DrawingSummary>,
-    /// Of a project: its plants and their makers.
+    /// For a project: its plants and their makers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     plants: Vec<PlantInfo>,
     warnings: Vec<String>,
@@ -193,7 +263,7 @@ fn drawings(path: &Path, input: files::Input, format: DrawingFormat) -> Outcome<
     for item in read_drawings(input, format, &files::stem(path)) {
         match item {
             Ok(read) => {
-                out.add(DrawingSummary::of(&read.drawing, &read.warnings));
+                out.add(DrawingSummary::from_drawing(&read.drawing, &read.warnings));
             }
             Err(e) => {
                 out.failed += 1;
@@ -204,8 +274,8 @@ fn drawings(path: &Path, input: files::Input, format: DrawingFormat) -> Outcome<
         out.warnings.truncate(WARNINGS);
     }
     match first_error {
-        Some(e) if out.count == 0 => Err(Failure::at(path, e)),
-        None if out.count == 0 => Err(Failure::at(path, "holds no drawing")),
+        Some(e) if out.count == 0 => Err(Failure::bad_file(path, e)),
+        None if out.count == 0 => Err(Failure::bad_file(path, "holds no drawing")),
         _ => Ok(out),
     }
 }
@@ -260,7 +330,7 @@ fn drawing_line(d: &DrawingSummary) -> String {
     format!("  {}: {strokes}, {points}, {w} x {h} units of the file{extras}", d.name)
 }
 
-// Four digits or so, whatever the size.
+// About four digits, whatever the size.
 fn short(x: f64) -> String {
     match x.abs() {
         a if a == 0.0 || (0.001..1e6).contains(&a) => {
@@ -307,6 +377,10 @@ impl Info {
             Content::Drawings(d) => {
                 d.lines(&mut out);
                 &d.warnings
+            }
+            Content::Cloud(c) => {
+                c.lines(&mut out);
+                &c.warnings
             }
             Content::Structure(s) => {
                 s.lines(&mut out);

@@ -1,4 +1,4 @@
-//! Every file that a command reads, so that none of them is written over.
+//! Every file that a command reads, so that none of them is overwritten.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, Metadata};
@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use companions::{LIMITS, Named, NamedFault, NamedFileError, Trust};
 
-/// `-` stands for standard input.
+/// Whether the path is `-`, which stands for standard input.
 pub(crate) fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Which file it is, whatever it is called: names differ by links, hard links, case and mounts.
+/// Identity of a file, whatever its name: names differ by links, hard links, case and mounts.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum FileId {
     /// Device and number on it.
@@ -26,8 +26,8 @@ pub(crate) enum FileId {
 }
 
 impl FileId {
-    /// Of a file or folder that exists; links are followed.
-    pub(crate) fn of(path: &Path) -> Option<Self> {
+    /// Returns the identity of an existing file or folder; links are followed.
+    pub(crate) fn from_path(path: &Path) -> Option<Self> {
         Self::new(path, &fs::metadata(path).ok()?)
     }
 
@@ -44,7 +44,7 @@ impl FileId {
     }
 }
 
-/// What was read, or is named to be read, by this command: a process does one.
+/// Files that this command has read or is going to read: a process runs one command.
 static READ: Mutex<BTreeMap<FileId, PathBuf>> = Mutex::new(BTreeMap::new());
 
 fn note(path: &Path, source: &Path, metadata: &Metadata) {
@@ -57,7 +57,8 @@ fn note(path: &Path, source: &Path, metadata: &Metadata) {
     }
 }
 
-/// A file that an option names, before anything is computed. `-` is the file behind standard input, if it is one.
+/// Registers a file that an option names, before anything is computed. `-` is the file behind standard input, if it is
+/// one.
 pub(crate) fn announce(path: &Path) {
     let (path, source) = match path.as_os_str() == "-" {
         true => (Path::new("standard input"), Path::new("/dev/stdin")),
@@ -68,7 +69,7 @@ pub(crate) fn announce(path: &Path) {
     }
 }
 
-/// Opens a file to be read. The only way: what is opened otherwise is not kept from being written over.
+/// Opens a file for reading. Files opened in any other way are not protected from being overwritten.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     if let Ok(metadata) = file.metadata() {
@@ -77,17 +78,17 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// The text of one of the system's own small files.
+/// Returns the text of one of the system's own small files.
 pub(crate) fn system_text(path: &Path) -> Option<String> {
     let mut text = String::new();
     open(path).ok()?.take(LIMITS.text).read_to_string(&mut text).ok()?;
     Some(text)
 }
 
-/// Whether files may name others outside of their folders; a process does one command.
+/// Whether files may name others outside their folders; a process runs one command.
 static TRUSTED: AtomicBool = AtomicBool::new(false);
 
-/// What --trust-paths says.
+/// Sets the value of --trust-paths.
 pub(crate) fn trust_paths(trusted: bool) {
     TRUSTED.store(trusted, Ordering::Relaxed);
 }
@@ -96,7 +97,8 @@ fn trust() -> Trust {
     Trust { paths: TRUSTED.load(Ordering::Relaxed), allow: "--trust-paths" }
 }
 
-/// The path of a file that another one names, if it may be opened. One that is not there may be: opening it says so.
+/// Returns the path of a file that another one names, if it may be opened. A missing file may be: opening it reports
+/// that.
 pub(crate) fn named_path(naming: &Path, name: &str) -> Result<PathBuf, NamedFileError> {
     let named = Named { naming, name };
     match named.find(trust()) {
@@ -106,7 +108,7 @@ pub(crate) fn named_path(naming: &Path, name: &str) -> Result<PathBuf, NamedFile
     Ok(named.path())
 }
 
-/// A file that another one names, read or not. One that must not be read is not looked at either.
+/// Registers a file that another one names, read or not. The disk is not asked for one that must not be read.
 pub(crate) fn announce_named(naming: &Path, name: &str) {
     let named = Named { naming, name };
     if named.find(trust()).is_ok() {
@@ -114,7 +116,7 @@ pub(crate) fn announce_named(naming: &Path, name: &str) {
     }
 }
 
-/// What is in a file that another one names: at most `limit` bytes.
+/// Reads a file that another one names: at most `limit` bytes.
 pub(crate) fn named_bytes(naming: &Path, name: &str, limit: u64) -> Result<Vec<u8>, NamedFileError> {
     let named = Named { naming, name };
     let (file, path) = named.open(trust(), limit)?;
@@ -124,17 +126,17 @@ pub(crate) fn named_bytes(naming: &Path, name: &str, limit: u64) -> Result<Vec<u
     named.read(file, limit)
 }
 
-/// What an earlier run of the same command wrote, from which this one goes on: no input, as it may be written anew.
+/// Opens a file of an earlier run of the same command, which this run continues: not an input, as it may be rewritten.
 pub(crate) fn open_own(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// All that is in a file of an earlier run.
+/// Reads a file of an earlier run.
 pub(crate) fn read_own(path: &Path) -> io::Result<Vec<u8>> {
     fs::read(path)
 }
 
-/// By which path a file was read.
+/// Returns the path by which a file was read.
 pub(crate) fn read_as(id: &FileId) -> Option<PathBuf> {
     READ.lock().ok()?.get(id).cloned()
 }
@@ -143,7 +145,7 @@ pub(crate) fn read_as(id: &FileId) -> Option<PathBuf> {
 mod tests {
     use super::*;
 
-    /// What is opened past [`open`] could be written over.
+    /// Files that are not opened through [`open`] could be overwritten.
     #[test]
     fn nothing_is_read_past_this_module() {
         let mut found = Vec::new();
@@ -151,7 +153,7 @@ mod tests {
         let mut sources = Vec::new();
         while let Some(folder) = folders.pop() {
             for path in fs::read_dir(folder).expect("our own sources").flatten().map(|e| e.path()) {
-                // The Studio's server writes nothing that it did not open.
+                // The Studio's server writes only files that it opened.
                 if path.is_dir() && !path.ends_with("studio") {
                     folders.push(path);
                 } else if path.is_file() {

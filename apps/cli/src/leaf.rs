@@ -64,7 +64,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         picture::check_name(png)?;
     }
     if let Some(format) = format {
-        // What is read may be in any unit; what is made from numbers alone has none but the file's.
+        // Input may be in any unit; a leaf made from numbers alone has only the unit of the output.
         args.given.check_axes(!args.inputs.is_empty() || format.holds(Room::Axes))?;
     }
     let blown = format.is_some_and(|format| format.holds(Room::Wind));
@@ -91,7 +91,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let mut items = vec![item];
     checks::accept(&items, &args.checks)?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        // --unit and --up were those of the input: glTF in metres with +Y up is no surprise.
+        // --unit and --up applied to the input: glTF in metres with +Y up is expected.
         let plain = !format.holds(Room::Axes) && !args.inputs.is_empty();
         let axes = if plain { &AxesArgs::default() } else { &args.axes };
         let form = levels::Form::new(path, format, &args.export, axes);
@@ -121,7 +121,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     Ok(())
 }
 
-/// Fails on options that this kind of leaf does not use, as far as the command line tells the kind.
+/// Fails on options that this kind of leaf does not use, as far as the command line gives the kind.
 fn check_used(args: &LeafArgs) -> Outcome {
     let given = &args.given;
     given.only_if(args.template, &["rows"], "--template", "no template is written")?;
@@ -175,15 +175,15 @@ fn check_used(args: &LeafArgs) -> Outcome {
     Ok(())
 }
 
-/// How blade and veins are meshed.
+/// Options for meshing blade and veins.
 const MESH: [&str; 6] = ["subdivisions", "sides", "rings", "caps", "margin_vein", "wind"];
-/// What surface the blade is.
+/// Options for the surface of the blade.
 const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
-/// How the leaf is bent and painted, its paint last.
+/// Options for bending and painting the leaf, its paint last.
 const LOOK: [&str; 4] = ["curl", "wilt", "ball", "texture"];
-/// A whole plant, and what only that has.
+/// Options of a whole plant, and those that only a plant has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
-/// What else only a leaf has that is made.
+/// Other options that only a leaf with meshes has.
 const MADE: [&str; 14] = [
     "strict",
     "materials",
@@ -239,7 +239,7 @@ fn summary(item: &ItemReport, png: Option<&Path>) -> String {
     }
 }
 
-/// What the options ask for.
+/// Collects the settings from the options.
 fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptions> {
     let (shape, look) = (&args.shape, &args.look);
     let (texture, picture) = match look.texture.to_str() {
@@ -248,8 +248,8 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         _ => {
             let path = &look.texture;
             let picture = read_picture(&files::read_bytes(path, LIMITS.picture)?);
-            let picture =
-                picture.ok_or_else(|| Failure::at(path, "is no PNG or JPEG picture that can be read"))?;
+            let picture = picture
+                .ok_or_else(|| Failure::bad_file(path, "is no PNG or JPEG picture that can be read"))?;
             (LeafPaint::default(), Some(Arc::new(picture)))
         }
     };
@@ -284,27 +284,29 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
     Ok(LeafOptions { spec, skin, picture, side_veins, edits })
 }
 
-/// What comes out before it is written.
+/// Result before it is written.
 struct Product {
     made: MadePlant,
     marks: Option<Measured>,
-    /// What was taken off a scan's coordinates.
+    /// Offset subtracted from a scan's coordinates.
     offset_m: Option<[f64; 3]>,
 }
 
-/// What `--marks` writes.
+/// Content of `--marks`.
 enum Measured {
     Rows(Marks),
     Rays(Rays),
 }
 
-/// No leaf that is scanned is larger; metres, and the most and the least that no unit makes likely.
+/// Size above which a scanned leaf suggests another unit, metres.
 const LARGEST_M: f64 = 3.0;
+/// Size below which a scanned leaf suggests another unit, metres.
 const SMALLEST_M: f64 = 0.002;
-/// The size of leaves that people scan: of two units that which makes a leaf nearer to it is likelier.
+/// Usual size of scanned leaves, metres: of two units, the one that gives a leaf nearer to it is likelier.
 const USUAL_M: f64 = 0.08;
 
-/// Takes another unit where none was given and metres make no leaf; says so, as it does where the given one makes none.
+/// Tries another unit where none was given and metres give no plausible leaf; warns of this, and of a given unit that
+/// gives none.
 fn check_unit(args: &LeafArgs, points: &mut [DVec3], report: &mut Report) {
     let finite = || points.iter().filter(|p| p.is_finite());
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -351,7 +353,7 @@ fn doubtful(report: &mut Report, size: f64) {
     );
 }
 
-/// A scan to a leaf.
+/// Makes a leaf of a scan.
 fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let [path] = args.inputs.as_slice() else {
         return Err(Failure::Bad("--scan takes one cloud, of one leaf; give one file".into()));
@@ -377,7 +379,7 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let item = &mut made.item;
     item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
-    let offset_m = origin.told(&axes);
+    let offset_m = origin.offset_in(&axes);
     Ok(Product { made, marks: Some(Measured::Rows(found.marks)), offset_m })
 }
 
@@ -418,10 +420,10 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     for (one, path) in read.iter().zip(&args.inputs) {
         let Form::Rows(marks) = &one.form else {
             let why = "is a leaf of chief veins; --plant and --days are for leaves of rows of marks";
-            return Err(Failure::at(path, why));
+            return Err(Failure::bad_file(path, why));
         };
         report.warnings.extend(one.warnings.iter().cloned());
-        full.push(marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
+        full.push(marks.complete(&mut report).map_err(|e| Failure::bad_file(path, e))?);
     }
     let (mut made, marks) = if args.plant.plant {
         let spec = ShootSpec {
@@ -447,7 +449,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     Ok(Product { made, marks, offset_m: None })
 }
 
-/// A leaf of chief veins, made from numbers or digitised.
+/// Makes a leaf of chief veins, from numbers or digitised.
 fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outcome<Product> {
     for options in [&SURFACE[..], &["texture", "margin_vein", "plant", "days"]] {
         args.given.refuse(options, "leaves of rows of marks", "this is one of chief veins")?;
@@ -460,7 +462,7 @@ fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outco
     Ok(Product { made, marks: Some(Measured::Rays(rays)), offset_m: None })
 }
 
-/// The chief veins of --venation.
+/// Makes the chief veins of --venation.
 fn veins_of(args: &LeafArgs, word: VenationWord) -> Outcome<(&'static str, Rays)> {
     Ok(match word {
         VenationWord::Palmate => {
@@ -488,14 +490,14 @@ fn odd(veins: u32, most: u32) -> Outcome<u32> {
 fn failure(args: &LeafArgs, error: LeafError) -> Failure {
     match error {
         LeafError::Cancelled(_) => Failure::Cancelled,
-        other => Failure::at(
+        other => Failure::bad_file(
             args.inputs.first().map_or(Path::new("leaf"), PathBuf::as_path),
             format_args!("{other}{}", leaf_data::way_out(&other)),
         ),
     }
 }
 
-/// The one leaf, or the leaf of the day that was asked for.
+/// Returns the only leaf, or the leaf of the day that was asked for.
 fn grown(args: &LeafArgs, mut full: Vec<FullMarks>) -> Outcome<FullMarks> {
     let Some(day) = args.look.day else {
         return full.pop().ok_or_else(|| Failure::Bug("no leaf was read".into()));
@@ -508,5 +510,5 @@ fn grown(args: &LeafArgs, mut full: Vec<FullMarks>) -> Outcome<FullMarks> {
         )));
     }
     let stages = args.look.days.iter().copied().zip(full).collect();
-    LeafGrowth::new(stages).and_then(|g| g.at(day)).map_err(|e| Failure::Bad(e.to_string()))
+    LeafGrowth::new(stages).and_then(|g| g.marks_on_day(day)).map_err(|e| Failure::Bad(e.to_string()))
 }

@@ -15,42 +15,43 @@ use crate::files;
 use crate::inputs;
 use crate::machine::Machine;
 
-/// Widths are read off to about so much of a leaf: a greater stretch of their places is told.
+/// Stretch of the places of widths, as a share of the leaf, above which it is reported: widths are read off about so
+/// precisely.
 const STRETCH_TOLD: f64 = 0.03;
-/// Places on each vein of a profile: a span of 5 % of the leaf between two.
+/// Number of places on each vein of a profile: a span of 5 % of the leaf between two.
 const PROFILE_MARKS: usize = 21;
 
-/// One leaf as it was read.
+/// One leaf as read.
 pub(crate) struct ReadLeaf {
     pub(crate) name: String,
     pub(crate) form: Form,
-    /// What thickness means, where the file says so.
+    /// Meaning of thickness, where the file gives it.
     pub(crate) thickness: Option<ThicknessRule>,
     pub(crate) warnings: Vec<Warning>,
 }
 
-/// What the veins of a leaf are like.
+/// Form of the veins of a leaf.
 pub(crate) enum Form {
     /// Side veins along one midrib.
     Rows(Marks),
-    /// Chief veins that start together.
+    /// Chief veins with a common start.
     Rays(Rays),
 }
 
-/// What is asked for about how files are read.
+/// Options for reading files.
 struct Asked<'a> {
     axes: MarksAxes,
     length_m: Option<f64>,
     graph: GraphWord,
-    /// Which leaf of several, from 1.
+    /// Number of the leaf among several, from 1.
     number: Option<u32>,
     thickness: Option<ThicknessWord>,
-    /// The axes of the input are also those of the output.
+    /// Whether the axes of the input are also those of the output.
     axes_written: bool,
     given: &'a Given,
 }
 
-/// Reads the leaf of one file as `args` ask for.
+/// Reads the leaf of one file with the settings of `args`.
 pub(crate) fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadLeaf> {
     let asked = Asked {
         axes: axes_of(&args.axes),
@@ -78,7 +79,7 @@ impl Asked<'_> {
             return self.form(path, name, input);
         }
         let read = read_leaf_file(input, &name, self.axes);
-        let read = read.map_err(|e| Failure::at(path, e))?;
+        let read = read.map_err(|e| Failure::bad_file(path, e))?;
         if !matches!(read, LeafFile::Graph(_)) {
             self.given.refuse(&["graph", "length"], "vein graphs", "this leaf has measured lengths")?;
         }
@@ -94,13 +95,13 @@ impl Asked<'_> {
         }
     }
 
-    /// A leaf of numbers.
+    /// Makes a leaf from numbers.
     fn form(&self, path: &Path, name: String, mut input: files::Input) -> Outcome<ReadLeaf> {
         let others = ["graph", "length", "number", "thickness", "up", "unit"];
         self.given.refuse(&others, "measured leaves", "a form says its own numbers")?;
         let mut text = String::new();
         input.read_to_string(&mut text).map_err(|e| Failure::io(path, "read", &e))?;
-        let form: LeafForm = burgeon::spec::from_toml(&text).map_err(|e| Failure::at(path, e))?;
+        let form: LeafForm = burgeon::spec::from_toml(&text).map_err(|e| Failure::bad_file(path, e))?;
         let thickness = Some(ThicknessRule::Diameter);
         Ok(ReadLeaf { name, form: Form::Rows(form.marks()), thickness, warnings: Vec::new() })
     }
@@ -119,7 +120,7 @@ impl Asked<'_> {
         Ok(ReadLeaf { name, form: Form::Rays(rays), thickness, warnings })
     }
 
-    /// A warning where neither the file nor the command line says a unit.
+    /// Returns a warning where neither the file nor the command line gives a unit.
     fn unit_taken(&self, is_said: bool, length: f64) -> Option<Warning> {
         let message = || {
             format!(
@@ -131,7 +132,7 @@ impl Asked<'_> {
         is_taken.then(|| Warning { code: "unit-taken", message: message(), fields: Vec::new() })
     }
 
-    /// What a file says of itself wins over what it is assumed to be; it must not contradict what was asked for.
+    /// Checks that the statements of a file, which override assumptions, do not contradict the options.
     fn agree(&self, path: &Path, axes: MarksAxes, thickness: Option<ThicknessRule>) -> Outcome {
         let rule = |rule: ThicknessRule| if rule == ThicknessRule::Radius { "radius" } else { "diameter" };
         let asked_rule = self.thickness.map(ThicknessRule::from);
@@ -150,26 +151,26 @@ impl Asked<'_> {
                 let what = format_args!(
                     "says `# {option}: {file}`, --{option} says {asked}: correct the file or leave the option out"
                 );
-                return Err(Failure::at(path, what));
+                return Err(Failure::bad_file(path, what));
             }
         }
         Ok(())
     }
 
-    /// A vein graph: as palmate where it is one, else by its midrib.
+    /// Makes a leaf of a vein graph: palmate where it is, else by its midrib.
     fn graph(&self, path: &Path, name: String, read: ReadGraph) -> Outcome<ReadLeaf> {
         let given = self.given;
         given.refuse(&["thickness"], "marks and chief veins", "a vein graph has radii")?;
         given.only_if(self.axes_written, &["up", "unit"], "other files", "a vein graph says them itself")?;
         let mut report = Report { warnings: read.warnings, ..Report::default() };
-        let failed = |e| Failure::at(path, e);
+        let failed = |e| Failure::bad_file(path, e);
         let rays = match self.graph {
             GraphWord::Midrib => None,
             GraphWord::Auto | GraphWord::Palmate => read.graph.rays(&mut report).map_err(failed)?,
         };
         if rays.is_none() && self.graph == GraphWord::Palmate {
             let what = "no place is found that three or more thick veins leave; --graph midrib reads it as a leaf of one";
-            return Err(Failure::at(path, what));
+            return Err(Failure::bad_file(path, what));
         }
         if let Some(rays) = &rays {
             let veins = rays.rays.iter().filter(|r| r.is_vein()).count();
@@ -196,17 +197,20 @@ impl Asked<'_> {
             Form::Rows(marks) if sized => Form::Rows(marks.scaled(length / marks.length())),
             other => other,
         };
-        // A radius is no calliper's reading, but its double is.
+        // A radius is not a reading of callipers, but its double is.
         Ok(ReadLeaf { name, form, thickness: Some(ThicknessRule::Diameter), warnings: report.warnings })
     }
 
-    /// The leaf of a file of profiles that is asked for.
+    /// Returns the requested leaf of a file of profiles.
     fn profile(&self, path: &Path, read: ReadProfiles) -> Outcome<ReadLeaf> {
         let users = "files that do not say it themselves";
         self.given.only_if(self.axes_written, &["up"], users, "profiles have y upwards")?;
         self.given.refuse(&["thickness"], "marks and chief veins", "a profile has none")?;
         if read.axes.unit != self.axes.unit && self.given.has("unit") {
-            return Err(Failure::at(path, "says its unit itself: leave --unit out or correct the file"));
+            return Err(Failure::bad_file(
+                path,
+                "says its unit itself: leave --unit out or correct the file",
+            ));
         }
         let count = read.leaves.len();
         let mut report = Report::default();
@@ -218,12 +222,12 @@ impl Asked<'_> {
         }
         let number = self.number.unwrap_or(1);
         let Some(leaf) = read.leaves.into_iter().nth(number as usize - 1) else {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 path,
                 format_args!("holds {count} leaves; --number {number} is none of them"),
             ));
         };
-        let mut rays = leaf.profile.rays(PROFILE_MARKS).map_err(|e| Failure::at(path, e))?;
+        let mut rays = leaf.profile.rays(PROFILE_MARKS).map_err(|e| Failure::bad_file(path, e))?;
         report.warn(
             "veins-guessed",
             "a profile holds no veins: nine parallel ones were made, as thick as a lily's",
@@ -257,7 +261,7 @@ impl Asked<'_> {
     }
 }
 
-/// A leaf for other makers' plants, from marks, chief veins or a profile (.csv, .json) or a model of a leaf.
+/// Makes a leaf for other makers' plants, from marks, chief veins or a profile (.csv, .json) or a model of a leaf.
 pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<LeafTemplate> {
     let measured =
         files::extension(path).is_some_and(|e| ["csv", "json"].iter().any(|k| e.eq_ignore_ascii_case(k)));
@@ -274,7 +278,7 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     };
     if let Some(kind) = model {
         let (model, _, _) = files::read_opened_model(path, input, kind, &axes)?;
-        return LeafTemplate::of_model(&model).map_err(|e| Failure::at(path, e));
+        return LeafTemplate::of_model(&model).map_err(|e| Failure::bad_file(path, e));
     }
     let given = Given::default();
     let asked = Asked {
@@ -288,19 +292,19 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     };
     let failed = |e| match e {
         LeafError::Cancelled(_) => Failure::Cancelled,
-        other => Failure::at(path, format_args!("{other}{}", way_out(&other))),
+        other => Failure::bad_file(path, format_args!("{other}{}", way_out(&other))),
     };
     let read = asked.read(path, input)?;
     let mut options = LeafOptions::default();
     options.spec.thickness = read.thickness;
     match read.form {
         Form::Rows(marks) => {
-            let full = marks.complete(&mut Report::default()).map_err(|e| Failure::at(path, e))?;
+            let full = marks.complete(&mut Report::default()).map_err(|e| Failure::bad_file(path, e))?;
             LeafTemplate::of_marks(&full, &options, Seed::new(seed), &machine.run()).map_err(failed)
         }
         Form::Rays(rays) => {
             let made = LeafTemplate::of_rays(&rays, &options, &machine.run()).map_err(failed)?;
-            made.map_err(|e| Failure::at(path, e))
+            made.map_err(|e| Failure::bad_file(path, e))
         }
     }
 }
@@ -314,7 +318,7 @@ impl From<ThicknessWord> for ThicknessRule {
     }
 }
 
-/// The command that helps where a leaf could not be made; empty where none does.
+/// Returns the command that helps where a leaf could not be made; empty where none does.
 pub(crate) const fn way_out(error: &LeafError) -> &'static str {
     match error {
         LeafError::Several(_) => "; `burgeon bloom run SCAN --plant` makes all of it",

@@ -1,7 +1,8 @@
-//! The lock of a process in a folder into which it writes, and what it would leave behind there.
+//! The lock of a process in a folder into which it writes, and the files that it must not leave behind there.
 //!
-//! Whoever writes into a folder has a lock file there as long as it has drafts. Where the lock is free, its holder is
-//! gone, whatever machine, container or user it was: the next command that writes there finishes or removes what is left.
+//! A process that writes into a folder keeps a lock file there as long as it has drafts. Where the lock is free, its
+//! holder is gone, whatever machine, container or user it was: the next command that writes there finishes or removes
+//! the remains.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, TryLockError};
@@ -13,14 +14,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use crate::disk::{self, NewFile};
 
-/// What this process has on disks and would not leave behind, for a program that is ended in the middle.
+/// Files and folders that this process must not leave behind when it is interrupted.
 pub(crate) struct State {
     pub(crate) drafts: BTreeSet<PathBuf>,
     locks: BTreeSet<PathBuf>,
-    /// Folders that were made for outputs; they go if they are empty.
+    /// Folders made for outputs, to be removed if they are empty.
     folders: Vec<PathBuf>,
     leases: BTreeMap<PathBuf, Weak<Lease>>,
-    /// Folders in which it was looked for what others left.
+    /// Folders that were searched for the remains of others.
     swept: BTreeSet<PathBuf>,
 }
 
@@ -31,25 +32,25 @@ static STATE: Mutex<State> = Mutex::new(State {
     leases: BTreeMap::new(),
     swept: BTreeSet::new(),
 });
-/// Numbers of drafts.
+/// Counter of drafts.
 static COUNT: AtomicU64 = AtomicU64::new(0);
-/// How often a name is tried: one that is taken is another's.
+/// Number of tries for a free name: a name that is taken belongs to another.
 pub(crate) const TRIES: usize = 64;
 
 pub(crate) fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What a file is that a command has in a folder for a while. Its name is `.burgeon-RUN-NUMBER.part`, for example.
+/// Role of a temporary file of a command in a folder. Its name is `.burgeon-RUN-NUMBER.part`, for example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// A file that is not complete, or not in place.
     Part,
-    /// A list of the files of a set that are complete and are to be in place.
+    /// A list of the files of a set that are complete and are to be put in place.
     Set,
-    /// Says in which other folder that list is.
+    /// A pointer to the other folder with that list.
     See,
-    /// Held by the process that has the others.
+    /// A lock held by the process that owns the others.
     Lock,
 }
 
@@ -65,8 +66,8 @@ impl Role {
         }
     }
 
-    /// The run and the role of a file that has one of our names.
-    pub(crate) fn of(name: &str) -> Option<(&str, Self)> {
+    /// Returns the run and the role of a file that has one of our names.
+    pub(crate) fn from_file_name(name: &str) -> Option<(&str, Self)> {
         let rest = name.strip_prefix(START)?;
         let (role, rest) = Self::ALL.iter().find_map(|r| Some((*r, rest.strip_suffix(r.extension())?)))?;
         let (run, number) = rest.split_once('-').map_or((rest, None), |(run, number)| (run, Some(number)));
@@ -74,7 +75,7 @@ impl Role {
         let is_run = run.len() == 16 && run.bytes().all(|b| b.is_ascii_hexdigit());
         let is_ours = match (role, number) {
             (Self::Lock, None) => is_run,
-            // Versions before had drafts of a random number alone, and of two numbers.
+            // Earlier versions had drafts of a random number alone, and of two numbers.
             (Self::Part, None) => is_run,
             (Self::Part, Some(number)) => is_number(number) && (is_run || is_number(run)),
             (Self::Set | Self::See, Some(number)) => is_number(number) && is_run,
@@ -86,18 +87,19 @@ impl Role {
 
 const START: &str = ".burgeon-";
 
-/// The lock of this process in a folder, which goes with the last of its drafts there.
+/// The lock of this process in a folder, released with the last of its drafts there.
 #[derive(Debug)]
 pub(crate) struct Lease {
     pub(crate) folder: PathBuf,
     pub(crate) run: String,
-    /// Holds the lock; where a disk has none, only a file.
+    /// The lock file; on a disk without locks, only a file.
     file: NewFile,
 }
 
 impl Lease {
-    /// That of a folder, and whether it is the first one there: then what others left there has not been looked for.
-    pub(crate) fn of(folder: &Path) -> io::Result<(Arc<Self>, bool)> {
+    /// Returns the lock of a folder, and whether it is the first one there: then nobody has searched for the remains of
+    /// others.
+    pub(crate) fn acquire(folder: &Path) -> io::Result<(Arc<Self>, bool)> {
         let mut state = state();
         let held = state.leases.get(folder).and_then(Weak::upgrade);
         let lease = match held {
@@ -121,7 +123,7 @@ impl Lease {
                 }
                 Err(e) => return Err(e),
             };
-            // Somebody who sweeps at this moment may take it for one that was left.
+            // Another process that sweeps at this moment may take it for a remaining one.
             let lost = matches!(file.file().try_lock(), Err(TryLockError::WouldBlock));
             if lost || fs::symlink_metadata(&path).is_err() {
                 continue;
@@ -136,7 +138,7 @@ impl Lease {
         self.folder.join(format!("{START}{}{}", self.run, Role::Lock.extension()))
     }
 
-    /// A name that is this process's own.
+    /// Returns a name that is unique to this process.
     pub(crate) fn name(&self, role: Role) -> PathBuf {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         self.folder.join(format!("{START}{}-{number}{}", self.run, role.extension()))
@@ -161,7 +163,7 @@ impl Drop for Lease {
     fn drop(&mut self) {
         let path = self.path();
         let mut state = state();
-        // Another may have come meanwhile.
+        // Another lease may have been taken meanwhile.
         if state.leases.get(&self.folder).is_some_and(|l| l.strong_count() == 0) {
             state.leases.remove(&self.folder);
         }
@@ -171,19 +173,19 @@ impl Drop for Lease {
     }
 }
 
-/// A folder that is made for outputs: it goes when the program is ended, if nothing lies in it.
+/// Registers a folder made for outputs: it is removed at the end of the program if it is empty.
 pub(crate) fn is_made(folder: &Path) {
     state().folders.push(folder.to_path_buf());
 }
 
-/// Removes what is half-written, at the end of the program: nothing more can be made afterwards.
+/// Removes half-written files at the end of the program: nothing more can be made afterwards.
 pub(crate) fn remove_all() {
     let state = state();
     remove(&state);
     std::mem::forget(state);
 }
 
-/// [`remove_all`] where nothing may be waited for: the caller may hold what it takes.
+/// Calls [`remove_all`] if it need not wait: the caller may hold the lock.
 pub(crate) fn abandon_all() {
     if let Ok(state) = STATE.try_lock() {
         remove(&state);
@@ -196,24 +198,24 @@ fn remove(state: &State) {
     state.folders.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
 }
 
-// Keys of hash maps are random numbers of the system, which is all that is wanted here: other processes, and others in
-// containers where each has the same number, take other names.
+// Keys of hash maps are random numbers of the system, which is enough here: other processes, and those in containers
+// where each has the same number, use other names.
 pub(crate) fn random() -> u64 {
     RandomState::new().build_hasher().finish()
 }
 
-/// Whether nobody holds the lock of a run any more.
+/// State of the lock of a run.
 #[derive(Debug)]
 pub(crate) enum Holder {
     /// Its process is gone; the lock is ours now.
     Gone(File),
     Alive,
-    /// The lock is not there, or the disk has none.
+    /// The lock does not exist, or the disk has none.
     Unknown,
 }
 
 impl Holder {
-    pub(crate) fn of(folder: &Path, run: &str) -> Self {
+    pub(crate) fn find(folder: &Path, run: &str) -> Self {
         let path = folder.join(format!("{START}{run}{}", Role::Lock.extension()));
         if !fs::symlink_metadata(&path).is_ok_and(|m| m.is_file()) {
             return Self::Unknown;
@@ -241,7 +243,7 @@ mod tests {
             (".burgeon-0123456789abcdef.lock", "0123456789abcdef", Role::Lock),
             (".burgeon-17-3.part", "17", Role::Part),
         ] {
-            assert_eq!(Role::of(name), Some((run, role)), "{name}");
+            assert_eq!(Role::from_file_name(name), Some((run, role)), "{name}");
         }
         for name in [
             ".burgeon-.part",
@@ -254,7 +256,7 @@ mod tests {
             ".burgeon-0123456789abcdef-1.lock",
             ".burgeon-0123456789abcdef-bee.part",
         ] {
-            assert_eq!(Role::of(name), None, "{name}");
+            assert_eq!(Role::from_file_name(name), None, "{name}");
         }
     }
 }

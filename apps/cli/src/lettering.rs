@@ -42,10 +42,10 @@ const LETTERS: [[u8; 5]; 37] = [
     [7, 5, 7, 1, 7],
     [0, 0, 0, 0, 2],
 ];
-/// From the left of a letter to that of the next, pixels of a letter.
+/// Distance from the left of a letter to that of the next, in dots of a letter.
 pub(crate) const ADVANCE: i64 = 4;
 
-/// Paints a pixel, if the picture has it.
+/// Paints a pixel, if it lies within the picture.
 pub(crate) fn put_dot(picture: &mut Picture, [x, y]: [i64; 2], colour: [u8; 3]) {
     let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return };
     if x >= picture.width || y >= picture.height {
@@ -55,8 +55,8 @@ pub(crate) fn put_dot(picture: &mut Picture, [x, y]: [i64; 2], colour: [u8; 3]) 
     picture.pixels[at..at + 3].copy_from_slice(&colour);
 }
 
-/// Writes a text from its upper left corner; what is no letter, digit or point is left free. `dot`: pixels of the picture along
-/// each side of a pixel of a letter.
+/// Writes a text from its upper left corner; characters other than letters, digits and points are left blank. `dot`:
+/// pixels of the picture along each side of a dot of a letter.
 pub(crate) fn write_text(picture: &mut Picture, [x, y]: [i64; 2], text: &str, (dot, colour): (i64, [u8; 3])) {
     for (k, c) in (0_i64..).zip(text.bytes()) {
         let letter = match c.to_ascii_uppercase() {

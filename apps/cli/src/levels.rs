@@ -1,16 +1,18 @@
-//! A plant's file with its coarser copies beside it, within a budget if one is asked for.
+//! A plant's file with its coarser copies next to it, within a budget if there is one.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use burgeon::formats::{
-    ExportSpec, Level, ModelFormat, PngCache, Room, WriteError, model_files, write_glb_levels,
-    write_glb_rigged,
+    Assembly, ExportSpec, Level, ModelFormat, PngCache, Room, WriteError, assembly_files, model_files,
+    write_glb_levels, write_glb_rigged,
 };
-use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part};
+use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::{SolidError, SolidSpec};
-use burgeon::{Allowance, ItemReport, Levels, Report, Warning};
+use burgeon::{
+    Allowance, AssemblyError, ItemReport, Levels, Report, Warning, name_after, print_plant, write_engine_glb,
+};
 
 use crate::args::{AxesArgs, ExportArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
@@ -26,7 +28,7 @@ pub(crate) struct Whole<'a> {
     pub(crate) levels: Levels,
 }
 
-/// Where a plant goes, and how it is written.
+/// Target of a plant, and its form.
 #[derive(Clone, Copy)]
 pub(crate) struct Form<'a> {
     pub(crate) goal: Goal<'a>,
@@ -36,7 +38,7 @@ pub(crate) struct Form<'a> {
 }
 
 impl<'a> Form<'a> {
-    /// A file that `-o` names.
+    /// Makes the form of a file that `-o` names.
     pub(crate) fn new(
         path: &'a Path,
         format: PlantFormat,
@@ -47,15 +49,37 @@ impl<'a> Form<'a> {
     }
 
     fn is_in_one_file(&self) -> bool {
-        self.export.in_one_file() && self.format.holds(Room::Levels)
+        (self.export.in_one_file() || self.export.nodes) && self.format.holds(Room::Levels)
+    }
+
+    /// Writes levels into one file, as named nodes if the engine wants them.
+    fn write_levels(
+        &self,
+        plant: &Plant,
+        levels: &[Level<'_>],
+        cache: &mut PngCache,
+        out: impl Write,
+    ) -> Result<(), WriteError> {
+        match self.export.engine.filter(|_| self.export.nodes) {
+            Some(engine) => {
+                let models: Vec<&Model> = levels.iter().map(|level| level.model).collect();
+                write_engine_glb(engine, plant, &models, cache, out)
+            }
+            None => write_glb_levels(levels, self.export.packing(), cache, out),
+        }
     }
 
     fn gltf(&self) -> ModelFormat {
         self.format.model().unwrap_or(ModelFormat::Glb)
     }
 
-    /// The bytes of the file of a model, of which `levels` has all levels, and of the files beside it.
-    fn weigh(&self, model: &Model, levels: &[Level<'_>], cache: &mut PngCache) -> Outcome<u64> {
+    /// Returns the bytes of the file of a model, whose levels are in `levels`, and of the files next to it.
+    fn weigh(
+        &self,
+        (plant, model): (&Plant, &Model),
+        levels: &[Level<'_>],
+        cache: &mut PngCache,
+    ) -> Outcome<u64> {
         let failed = |e: WriteError| crate::output::write_failed(self.goal.path, e);
         let Some(format) = self.format.model() else { return Ok(0) };
         let mut out = Counter::default();
@@ -66,7 +90,7 @@ impl<'a> Form<'a> {
                 write_glb_rigged(model, &rig, cache, &mut out).map_err(failed)?;
             } else {
                 let of_file = if self.is_in_one_file() { levels } else { &levels[..levels.len().min(1)] };
-                write_glb_levels(of_file, self.export.packing(), cache, &mut out).map_err(failed)?;
+                self.write_levels(plant, of_file, cache, &mut out).map_err(failed)?;
             }
             return Ok(out.bytes);
         }
@@ -94,7 +118,7 @@ impl Write for Counter {
     }
 }
 
-/// The model and its levels as files hold them: what is left of each without leaves that are copies, and these.
+/// Returns the model and its levels as files hold them: each without the leaves that are copies, and these copies.
 fn split<'a>(model: &'a Model, levels: &'a Levels) -> Vec<Level<'a>> {
     let all = std::iter::once(model).chain(&levels.lods).enumerate();
     let of = |(k, model): (usize, &'a Model)| {
@@ -104,7 +128,7 @@ fn split<'a>(model: &'a Model, levels: &'a Levels) -> Vec<Level<'a>> {
     all.map(of).collect()
 }
 
-/// Makes a plant as small as it has to be.
+/// Reduces a plant to the allowed size.
 fn fit(form: &Form<'_>, whole: &mut Whole<'_>, item: &mut ItemReport, cache: &mut PngCache) -> Outcome {
     let export = form.export;
     if !export.has_budget() || form.format.model().is_none() {
@@ -116,9 +140,10 @@ fn fit(form: &Form<'_>, whole: &mut Whole<'_>, item: &mut ItemReport, cache: &mu
     let model = std::mem::take(&mut whole.model);
     let levels = std::mem::take(&mut whole.levels);
     let asked = (export.lods, export.impostor.is_some());
-    let weigh = |model: &Model, levels: &Levels| form.weigh(model, &split(model, levels), cache);
+    let plant = whole.plant;
+    let weigh = |model: &Model, levels: &Levels| form.weigh((plant, model), &split(model, levels), cache);
     let fitted = levels.within(model, allowance, asked, weigh)?;
-    let fitted = fitted.map_err(|e| Failure::at(form.goal.path, e))?;
+    let fitted = fitted.map_err(|e| Failure::bad_file(form.goal.path, e))?;
     if let Some(line) = fitted.line() {
         item.warnings.push(line);
     }
@@ -136,11 +161,11 @@ fn print(
     item: &mut ItemReport,
     machine: &Machine,
 ) -> Outcome {
-    let made = machine
-        .with_progress("print", |_| burgeon::skin::solid(whole.plant, &whole.model, spec, &machine.run()));
+    let made =
+        machine.with_progress("print", |_| print_plant(whole.plant, &whole.model, spec, &machine.run()));
     let made = made.map_err(|e| match e {
         SolidError::Cancelled(_) => Failure::Cancelled,
-        e => Failure::at(form.goal.path, e),
+        e => Failure::bad_file(form.goal.path, e),
     })?;
     let wall = spec.wall_m * 1e3;
     item.warnings
@@ -150,18 +175,15 @@ fn print(
         let many = "surfaces that hang on nothing, or lie within the body, were";
         item.warnings.push(format!("{} left out", say::counted(made.loose as u64, one, many)));
     }
-    let material = Material::plain("print", MaterialKind::Other, [0.6; 3]);
-    let part = Part { name: "print".to_owned(), material: MaterialId::new(0), mesh: made.mesh };
-    let name = whole.model.name.clone();
-    whole.model = Model { name, parts: vec![part], materials: vec![material], offset_m: None };
+    whole.model = made.model;
     whole.levels = Levels::default();
     item.counts.vertices = whole.model.vertex_count() as u64;
     item.counts.triangles = whole.model.triangle_count() as u64;
     Ok(())
 }
 
-/// Writes a plant and its coarser copies beside it. What became of it comes into the plant's entry of the report, the first of
-/// `items`; each copy gets an entry of its own after it.
+/// Writes a plant and its coarser copies next to it. The result is added to the plant's entry of the report, the first
+/// of `items`; each copy gets an entry of its own after it.
 pub(crate) fn write(
     outputs: &mut Outputs,
     form: &Form<'_>,
@@ -172,7 +194,7 @@ pub(crate) fn write(
 ) -> Outcome {
     let (format, export) = (form.format, form.export);
     if export.instances && whole.levels.copies.iter().all(|(_, copies)| copies.is_empty()) {
-        return Err(Failure::at(
+        return Err(Failure::bad_file(
             form.goal.path,
             "--instances is for plants of which a leaf stands in several places; this one has none: leave it out",
         ));
@@ -190,6 +212,9 @@ pub(crate) fn write(
     if let Some(report) = export.report().filter(|_| !machine.quiet) {
         say::line(&format!("for {}: {}", report.name, report.set.join(", ")));
     }
+    if let Some(made) = whole.levels.assembly.take() {
+        return write_assembly(outputs, form, made, &mut items[0], machine);
+    }
     let Whole { plant, model, levels } = &whole;
     let (one, gltf) = (form.is_in_one_file(), form.gltf());
     let of_file = split(model, levels);
@@ -200,7 +225,7 @@ pub(crate) fn write(
         machine.cancel.check()?;
         let goal = Goal { by, path: &path, packing: export.packing(), ..form.goal };
         let in_levels = |outputs: &mut Outputs, levels: &[Level<'_>], cache: &mut PngCache| {
-            files::write_gltf(outputs, goal, gltf, |out| write_glb_levels(levels, goal.packing, cache, out))
+            files::write_gltf(outputs, goal, gltf, |out| form.write_levels(plant, levels, cache, out))
         };
         let (written, write_ms) = machine.timed(|| match level {
             0 if one => in_levels(outputs, &of_file, cache).map(|()| PlantWritten::default()),
@@ -225,6 +250,27 @@ pub(crate) fn write(
     Ok(())
 }
 
+/// Writes a plant as a skeleton with leaves on its joints.
+fn write_assembly(
+    outputs: &mut Outputs,
+    form: &Form<'_>,
+    made: Result<Assembly, AssemblyError>,
+    item: &mut ItemReport,
+    machine: &Machine,
+) -> Outcome {
+    let mut assembly = made.map_err(|e| Failure::bad_file(form.goal.path, e))?;
+    let name = assembly.model.name.clone();
+    name_after(&name, &mut assembly.model);
+    let (_, stem) = form.goal.stems();
+    let spec = files::axes(form.axes.up, form.axes.unit);
+    let (written, write_ms) =
+        machine.timed(|| files::write_files(outputs, form.goal, assembly_files(&assembly, &stem, &spec)));
+    written?;
+    item.output = form.goal.path.display().to_string();
+    item.timings_ms.add_io(0.0, write_ms);
+    Ok(())
+}
+
 /// Writes a model with joints that sway.
 fn swaying(
     outputs: &mut Outputs,
@@ -244,15 +290,4 @@ fn swaying(
         }
     }
     Ok(report.warnings)
-}
-
-/// Names parts and materials after the plant: `oak_bark`, and not `bark` as those of all others.
-fn name_after(plant: &str, model: &mut Model) {
-    let stem = burgeon::formats::file_name(plant, "plant").to_lowercase();
-    for material in &mut model.materials {
-        material.name = format!("{stem}_{}", material.name);
-    }
-    for part in &mut model.parts {
-        part.name = format!("{stem}_{}", part.name);
-    }
 }

@@ -1,4 +1,4 @@
-//! Threads, time and the progress line: what the core leaves to its shell.
+//! Threads, time and the progress line: services that the core leaves to its shell.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex};
@@ -15,18 +15,18 @@ use crate::signals;
 #[derive(Debug)]
 pub(crate) struct Threads {
     pub(crate) count: usize,
-    /// None for one thread, or where the system grants no more.
+    /// `None` for one thread, or where the system grants no more.
     pool: Option<rayon::ThreadPool>,
 }
 
 impl Threads {
-    /// `asked`, or as many as the machine has.
+    /// Starts `asked` threads, or as many as the machine has.
     pub(crate) fn new(asked: Option<u16>) -> Self {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
         let count = asked.map_or_else(all, usize::from).max(1);
         let builder = || rayon::ThreadPoolBuilder::new().num_threads(count);
         // The calling thread is one of them: it starts at once instead of waking another and waiting for it, which
-        // counts where a drawing takes a few milliseconds. A thread can belong to one pool only.
+        // matters where a drawing takes a few milliseconds. A thread can belong to one pool only.
         let pool = || builder().use_current_thread().build().or_else(|_| builder().build()).ok();
         Self { count, pool: (count > 1).then(pool).flatten() }
     }
@@ -59,20 +59,20 @@ impl Clock for WallClock {
     }
 }
 
-/// Everything that a command computes with.
+/// Resources with which a command computes.
 #[derive(Debug)]
 pub(crate) struct Machine {
     pub(crate) threads: Threads,
     pub(crate) clock: WallClock,
     pub(crate) cancel: &'static CancelToken,
-    /// How much may be made.
+    /// Limits of what may be made.
     pub(crate) budget: Budget,
-    /// Print nothing but errors, and show no progress.
+    /// Whether to print nothing but errors, and show no progress.
     pub(crate) quiet: bool,
 }
 
 impl Machine {
-    /// As the options say; from now on memory is limited.
+    /// Sets up the machine by the options; limits memory from now on.
     pub(crate) fn new(args: &CommonArgs) -> Self {
         let clock = WallClock::start();
         let budget = Budget { times: args.budget, raise: Some("--budget") };
@@ -82,17 +82,17 @@ impl Machine {
         Self { threads: Threads::new(args.threads), clock, cancel: signals::token(), budget, quiet }
     }
 
-    /// A run on all threads.
+    /// Returns a run on all threads.
     pub(crate) fn run(&self) -> Run<'_> {
         Run { cancel: self.cancel, executor: &self.threads, clock: &self.clock, budget: self.budget }
     }
 
-    /// A run on the calling thread, for batches whose drawings are spread over threads already.
+    /// Returns a run on the calling thread, for batches whose drawings are spread over threads already.
     pub(crate) fn single(&self) -> Run<'_> {
         Run { cancel: self.cancel, executor: &burgeon::Serial, clock: &self.clock, budget: self.budget }
     }
 
-    /// Milliseconds since the command began: what everything so far took, reading, computing, pictures and writing.
+    /// Returns the milliseconds since the command began: of reading, computing, pictures and writing together.
     pub(crate) fn whole_ms(&self) -> f64 {
         self.clock.now_ms()
     }
@@ -105,7 +105,7 @@ impl Machine {
     }
 
     /// Runs `work` with a progress line on a terminal once it has taken a second: a bar where parts are counted or the
-    /// core tells how far it is.
+    /// core reports progress.
     pub(crate) fn with_progress<T>(&self, what: &str, work: impl FnOnce(&Progress) -> T) -> T {
         let progress = Progress { done: AtomicUsize::new(0), total: AtomicUsize::new(0) };
         if self.quiet || !std::io::IsTerminal::is_terminal(&std::io::stderr()) {
@@ -125,7 +125,7 @@ impl Machine {
     }
 }
 
-/// How far a command is; parts are counted by the work itself.
+/// Progress of a command; the work itself counts parts.
 #[derive(Debug)]
 pub(crate) struct Progress {
     done: AtomicUsize,
@@ -141,7 +141,7 @@ impl Progress {
         self.done.store(parts, Ordering::Relaxed);
     }
 
-    /// Position and length of the bar: of the parts, or of a hundred by what the core told.
+    /// Returns position and length of the bar: of the parts, or of a hundred by the progress of the core.
     fn bar(&self, core: &CancelToken) -> Option<(u64, u64)> {
         let total = self.total.load(Ordering::Relaxed) as u64;
         if total > 0 {

@@ -104,7 +104,7 @@ fn main() -> ExitCode {
             None => ExitCode::SUCCESS,
             Some(e) => Failure::io(Path::new("standard output"), "written", &e).tell(),
         },
-        // Work that is stopped in the middle may give other reasons.
+        // Work that is stopped half-way may give other reasons.
         Ok(Err(Failure::Bad(_) | Failure::Reported)) if signals::token().check().is_err() => {
             Failure::Cancelled.tell()
         }
@@ -113,7 +113,7 @@ fn main() -> ExitCode {
     }
 }
 
-// Help and version as they are; bad usage as one line.
+// Prints help and version unchanged, and bad usage as one line.
 fn usage(e: &clap::Error) -> ExitCode {
     if matches!(
         e.kind(),

@@ -1,4 +1,4 @@
-//! `burgeon completions` and `burgeon man`: what shells and `man` know of the command.
+//! `burgeon completions` and `burgeon man`: descriptions of the command for shells and `man`.
 
 use std::path::Path;
 
@@ -28,7 +28,7 @@ pub(crate) fn man(args: &ManArgs) -> Outcome {
     Ok(())
 }
 
-/// The page of a command and those of the commands below it, `burgeon-bloom-fit.1`; how many they are.
+/// Writes the page of a command and those of the commands below it, `burgeon-bloom-fit.1`; returns their number.
 fn pages(command: &clap::Command, name: &str, folder: &Path, outputs: &mut Outputs) -> Outcome<u64> {
     // A name of several words is one word on its page, as with git.
     let named: &'static str = String::leak(name.to_owned());

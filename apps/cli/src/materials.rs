@@ -16,7 +16,7 @@ use companions::{LIMITS, Named};
 use crate::failure::{Failure, Outcome};
 use crate::{files, inputs};
 
-/// What a file of materials asks for, with the pixels of its pictures by their paths.
+/// Contents of a file of materials, with the pixels of its pictures by their paths.
 #[derive(Debug, Default)]
 pub(crate) struct Materials {
     wear: Wear,
@@ -24,7 +24,7 @@ pub(crate) struct Materials {
 }
 
 impl Materials {
-    /// Reads a file of materials (.toml or .json) and the pictures beside it.
+    /// Reads a file of materials (.toml or .json) and the pictures next to it.
     pub(crate) fn read(path: &Path) -> Outcome<Self> {
         let wear: Wear = files::read_spec(path)?;
         let mut pictures = BTreeMap::new();
@@ -37,14 +37,14 @@ impl Materials {
                 (Pattern::Picture, Some(_)) => {}
                 (Pattern::Picture, None) => {
                     let line = "has a material of the pattern picture without a picture; name one: picture = \"petal.png\"";
-                    return Err(Failure::at(path, line));
+                    return Err(Failure::bad_file(path, line));
                 }
                 (_, Some(name)) => {
                     let line = format_args!(
                         "names the picture \"{name}\" in a material of the pattern {}; write pattern = \"picture\"",
                         pattern.word()
                     );
-                    return Err(Failure::at(path, line));
+                    return Err(Failure::bad_file(path, line));
                 }
                 (_, None) => {}
             }
@@ -52,12 +52,12 @@ impl Materials {
         Ok(Self { wear, pictures })
     }
 
-    /// As a plant is meshed with it.
+    /// Returns the materials in the form for meshing.
     pub(crate) fn worn(&self) -> Worn {
         self.wear.worn(|name| self.pictures.get(name).cloned())
     }
 
-    /// A document whose plant wears it; what it wore before is taken off.
+    /// Returns a document whose plant wears them instead of its own.
     pub(crate) fn on(&self, document: Document, id: PlantId) -> Outcome<Document> {
         let mut editor = Editor::new(document);
         let mut names = BTreeMap::new();
@@ -67,7 +67,7 @@ impl Materials {
                 .map_err(|e| Failure::Bug(e.to_string()))?;
             let picture = WornPicture::new(png.into()).map_err(|e| Failure::Bad(format!("{name}: {e}")))?;
             names.insert(name.clone(), picture.name());
-            run(&mut editor, PlantCommand::AddPicture(picture).of(id))?;
+            run(&mut editor, PlantCommand::AddPicture(picture).for_plant(id))?;
         }
         let kept = |m: &OrganMaterial| {
             let picture = m.picture.as_ref().and_then(|name| names.get(name).cloned());
@@ -81,21 +81,21 @@ impl Materials {
             .map(|s| s.id)
             .collect();
         if !ids.is_empty() {
-            run(&mut editor, SketchCommand::SetMaterial(ids.clone(), None).of(id))?;
+            run(&mut editor, SketchCommand::SetMaterial(ids.clone(), None).for_plant(id))?;
         }
-        // Pictures that nothing wears are forgotten: strokes put them on first.
+        // Unused pictures are dropped, so strokes put them on first.
         for wear in &self.wear.strokes {
             let strokes = wear.strokes.iter().filter_map(|&row| ids.get(row as usize).copied()).collect();
-            run(&mut editor, SketchCommand::SetMaterial(strokes, Some(kept(&wear.material))).of(id))?;
+            run(&mut editor, SketchCommand::SetMaterial(strokes, Some(kept(&wear.material))).for_plant(id))?;
         }
         for wearer in Wearer::ALL {
-            run(&mut editor, PlantCommand::Wear(wearer, self.wear.of(wearer).map(kept)).of(id))?;
+            run(&mut editor, PlantCommand::Wear(wearer, self.wear.material(wearer).map(kept)).for_plant(id))?;
         }
         Ok(editor.document().clone())
     }
 }
 
-/// What is so already is no fault.
+/// Runs a command whose setting may already apply.
 fn run(editor: &mut Editor, command: Command) -> Outcome {
     match editor.run(command) {
         Ok(()) | Err(CommandError::Nothing(_)) => Ok(()),
@@ -107,5 +107,5 @@ fn picture_beside(path: &Path, name: &str) -> Outcome<Arc<Texture>> {
     let bytes = inputs::named_bytes(path, name, LIMITS.picture)?;
     let line = "is no PNG or JPEG picture that can be read";
     let picture = read_picture(&bytes).map(Arc::new);
-    picture.ok_or_else(|| Failure::at(&Named { naming: path, name }.path(), line))
+    picture.ok_or_else(|| Failure::bad_file(&Named { naming: path, name }.path(), line))
 }

@@ -1,8 +1,8 @@
-//! The memory that the program may take: counted, so that too much of it ends in one line instead of an abort.
+//! The memory that the program may use: counted, so that an excess ends in one line instead of an abort.
 //!
-//! Every allocation passes here. A thread adds what it takes and gives back to a number of its own and tells all others
-//! of it in steps of [`STEP`], so that counting costs next to nothing. What the core can foresee it refuses itself, with
-//! the field to change (`base::Budget`); this is the net below it.
+//! Every allocation passes here. A thread keeps its own count of allocated and freed bytes and adds it to the common
+//! count in steps of [`STEP`], so that counting costs next to nothing. The core itself refuses what it can foresee,
+//! with the field to change (`base::Budget`); this is the safety net below it.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -13,34 +13,34 @@ use std::time::Duration;
 
 use burgeon::Budget;
 
-/// How far a thread's own count may be off before it tells the others: 256 KiB.
+/// Largest difference of a thread's own count before it is added to the common one: 256 KiB.
 const STEP: isize = 256 << 10;
 
-/// Bytes in use, but for what threads have not told yet.
+/// Bytes in use, except for those not yet added by threads.
 static LIVE: AtomicIsize = AtomicIsize::new(0);
-/// Bytes that may be in use.
+/// Largest number of bytes in use.
 static LIMIT: AtomicIsize = AtomicIsize::new(isize::MAX);
-/// Most bytes that were in use since this was set last.
+/// Largest number of bytes in use since this was last set.
 static PEAK: AtomicIsize = AtomicIsize::new(0);
-/// Whether the limit is what the machine has rather than what the budget allows.
+/// Whether the limit is the memory of the machine rather than that of the budget.
 static OF_MACHINE: AtomicBool = AtomicBool::new(false);
-/// The program is ending for want of memory.
+/// Whether the program is ending for lack of memory.
 static ENDING: AtomicBool = AtomicBool::new(false);
 
 thread_local! {
-    /// What this thread has taken, less what it gave back, since it last told.
+    /// Bytes that this thread has allocated minus those freed since it last added them to the common count.
     static UNTOLD: Cell<isize> = const { Cell::new(0) };
-    /// It is this thread that ends the program.
+    /// Whether this thread ends the program.
     static ENDS: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Counts what the system's allocator gives.
+/// Counts the allocations of the system's allocator.
 struct Counting;
 
 #[global_allocator]
 static MEMORY: Counting = Counting;
 
-/// Sets the limit: that of the budget, or what the machine has free if that is less.
+/// Sets the limit: that of the budget, or the free memory of the machine if that is less.
 pub(crate) fn limit(budget: &Budget) {
     let allowed = isize::try_from(budget.bytes()).unwrap_or(isize::MAX);
     let free = free_bytes().and_then(|b| isize::try_from(b).ok()).unwrap_or(isize::MAX);
@@ -48,7 +48,7 @@ pub(crate) fn limit(budget: &Budget) {
     LIMIT.store(free.min(allowed), Ordering::Relaxed);
 }
 
-/// What Linux could give without ending other programs; `None` where it does not tell.
+/// Returns the memory that Linux could give without ending other programs; `None` where it is unknown.
 fn free_bytes() -> Option<u64> {
     let text_of = |path: &str| crate::inputs::system_text(Path::new(path));
     let text = text_of("/proc/meminfo")?;
@@ -62,7 +62,7 @@ fn free_bytes() -> Option<u64> {
     Some(own.and_then(|t| t.trim().parse().ok()).map_or(machine, |own: u64| own.min(machine)))
 }
 
-/// What some work had in use at most beyond what was in use before, in steps of a quarter of a MiB.
+/// Returns the largest memory that some work used beyond what was in use before, in steps of a quarter of a MiB.
 pub(crate) fn peak_of<T>(work: impl FnOnce() -> T) -> (T, u64) {
     let before = LIVE.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);
@@ -70,10 +70,10 @@ pub(crate) fn peak_of<T>(work: impl FnOnce() -> T) -> (T, u64) {
     (made, PEAK.load(Ordering::Relaxed).saturating_sub(before).max(0).unsigned_abs() as u64)
 }
 
-/// Adds to what is in use, or takes away (below 0).
+/// Adds to the bytes in use, or subtracts (below 0).
 #[inline]
 fn count(bytes: isize) {
-    // A thread that is ending has no number of its own any more.
+    // A thread that is ending no longer has its own count.
     let told = UNTOLD.try_with(|untold| {
         let sum = untold.get().wrapping_add(bytes);
         let tells = sum.unsigned_abs() >= STEP.unsigned_abs();
@@ -99,8 +99,8 @@ fn tell(bytes: isize) {
 #[cold]
 fn end(by_budget: bool) {
     if ENDING.swap(true, Ordering::Relaxed) {
-        // To end takes a little memory, too: where even that is not to be had, this thread goes on with what it got.
-        // Another one waits for the end instead of running into the lack.
+        // Ending takes a little memory, too: where even that is unavailable, this thread continues with what it got.
+        // Other threads wait for the end instead of failing themselves.
         while !ENDS.try_with(Cell::get).unwrap_or(true) {
             std::thread::sleep(Duration::from_secs(1));
         }
@@ -111,7 +111,7 @@ fn end(by_budget: bool) {
     let in_use = LIVE.load(Ordering::Relaxed) >> 20;
     let mut to = std::io::stderr();
     if to.is_terminal() {
-        // In the place of the progress line.
+        // Replaces the progress line.
         let _ = write!(to, "\r\x1b[2K");
     }
     let _ = if by_budget {
@@ -159,7 +159,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// Layouts are at most `isize::MAX` large.
+/// Converts a size: layouts are at most `isize::MAX` large.
 const fn signed(bytes: usize) -> isize {
     bytes.cast_signed()
 }
@@ -180,7 +180,8 @@ mod tests {
     fn what_is_taken_and_given_back_is_counted() {
         let live = || LIVE.load(Ordering::Relaxed);
         let before = live();
-        // Other tests allocate as well: a size that all of them together do not have. Zeros are counted, not touched.
+        // Other tests allocate as well, so this size exceeds that of all of them together. Zeros are counted, not
+        // touched.
         let large = vec![0_u8; 2 << 30];
         assert!(live() - before > 1 << 30, "{}", live() - before);
         drop(large);

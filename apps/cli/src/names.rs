@@ -1,4 +1,4 @@
-//! Names of files made of names of drawings: safe on every system, and no two alike.
+//! Names of files made of names of drawings: safe on every system, and all different.
 
 use std::collections::BTreeMap;
 
@@ -7,11 +7,12 @@ use unicode_normalization::UnicodeNormalization as _;
 
 /// Most characters of a name.
 const MOST_CHARS: usize = 80;
-/// Most bytes of a name: what is made of it (`NAME--leaf.png`) must fit in the 255 that file systems take.
+/// Most bytes of a name: names derived from it (`NAME--leaf.png`) must fit in the 255 that file systems allow.
 const MOST_BYTES: usize = 200;
 
-/// A file name, without extension, from a drawing's name: what [`file_name`] keeps, in Unicode's composed form, never two
-/// `-` in a row (which set the names of textures apart), no name that Windows keeps for a device.
+/// Returns a file name, without extension, from a drawing's name: the characters that [`file_name`] keeps, in Unicode's
+/// composed form, never two `-` in a row (which separate the names of textures), and no name that Windows reserves for
+/// a device.
 pub(crate) fn safe(name: &str) -> String {
     let name: String = name.nfc().take(4 * MOST_CHARS).collect();
     let mut out = String::new();
@@ -28,7 +29,7 @@ pub(crate) fn safe(name: &str) -> String {
     }
 }
 
-/// The start of a name that leaves room for `more` bytes.
+/// Returns the start of a name that leaves room for `more` bytes.
 fn limited(name: &str, more: usize) -> String {
     let mut out = String::new();
     for c in name.chars().take(MOST_CHARS.saturating_sub(more)) {
@@ -41,7 +42,7 @@ fn limited(name: &str, more: usize) -> String {
     out
 }
 
-/// Names that Windows keeps for devices.
+/// Whether Windows reserves the name for a device.
 fn is_device(name: &str) -> bool {
     let name = name.split('.').next().unwrap_or(name).to_ascii_lowercase();
     let numbered = ["com", "lpt"].iter().find_map(|d| name.strip_prefix(d));
@@ -52,14 +53,14 @@ fn is_device(name: &str) -> bool {
     matches!(name.as_str(), "con" | "prn" | "aux" | "nul") || numbered.is_some_and(one_digit)
 }
 
-/// A name as a disk sees it that tells neither case nor Unicode's normal forms apart.
+/// Returns a name as seen by a disk that ignores case and Unicode's normal forms.
 pub(crate) fn folded(name: &str) -> String {
-    // Upper case first: both ß and ẞ are SS then.
+    // Upper case first: both ß and ẞ are then SS.
     name.nfd().flat_map(char::to_uppercase).flat_map(char::to_lowercase).collect::<String>().nfd().collect()
 }
 
-/// `name`, or `name-2`, `name-3`, ...: no two of them [`folded`] alike. `taken` holds every name given and the next number
-/// to try for it.
+/// Returns `name`, or `name-2`, `name-3`, ...: no two of them equal when [`folded`]. `taken` holds every name given and
+/// the next number to try for it.
 pub(crate) fn unique(taken: &mut BTreeMap<String, u64>, name: &str) -> String {
     let key = folded(name);
     let Some(&first) = taken.get(&key) else {
@@ -127,7 +128,7 @@ mod tests {
                 prop_assert!(!name.contains(['/', '\\', ':', '\0']) && !name.contains("--"), "{name:?}");
                 prop_assert!(!name.starts_with('.') && !name.ends_with(['.', ' ', '-']) && !is_device(&name));
                 prop_assert!(!name.chars().any(|c| c.is_control() || c.is_whitespace()));
-                // Textures are named as the drawing is.
+                // Textures have the name of the drawing.
                 prop_assert_eq!(&file_name(&name, "model"), &name);
                 prop_assert!(seen.insert(folded(&name)), "{name:?} twice");
             }

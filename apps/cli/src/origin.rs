@@ -1,24 +1,24 @@
-//! Clouds far from their origin, such as those in UTM coordinates: brought near it, and what was taken off is kept.
+//! Clouds far from their origin, such as those in UTM coordinates: moved near it, with the offset kept.
 
 use burgeon::Report;
 use burgeon::formats::ExportSpec;
 use burgeon::glam::DVec3;
 use burgeon::mesh::PointCloud;
 
-/// What is taken off the clouds of one series: the first decides for all.
+/// Offset subtracted from the clouds of one series: the first cloud decides for all.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Origin {
     decided: bool,
-    /// Metres, +Y up.
+    /// Offset in metres, +Y up.
     pub(crate) offset_m: Option<DVec3>,
 }
 
 impl Origin {
-    /// Brings points near the origin, as the first of their series. `axes` are those of their file.
+    /// Moves points near the origin, as the first of their series decides. `axes` are those of their file.
     pub(crate) fn bring(&mut self, points: &mut [DVec3], axes: &ExportSpec, report: &mut Report) {
         if !self.decided {
             *self = Self { decided: true, offset_m: PointCloud::far_offset(points) };
-            if let Some([x, y, z]) = self.told(axes) {
+            if let Some([x, y, z]) = self.offset_in(axes) {
                 report.warn(
                     "far-from-origin",
                     format!(
@@ -33,13 +33,13 @@ impl Origin {
         }
     }
 
-    /// The offset in metres, in the axes of the cloud's file: for the report.
-    pub(crate) fn told(&self, axes: &ExportSpec) -> Option<[f64; 3]> {
+    /// Returns the offset in metres, in the axes of the cloud's file: for the report.
+    pub(crate) fn offset_in(&self, axes: &ExportSpec) -> Option<[f64; 3]> {
         let metres = ExportSpec { up: axes.up, ..ExportSpec::default() };
         self.offset_m.map(|o| metres.place(o))
     }
 
-    /// A place that a person gives in the coordinates of the cloud, as everything is placed here.
+    /// Moves a place that a person gives in the coordinates of the cloud in the same way.
     pub(crate) fn place(&self, p: DVec3) -> DVec3 {
         p - self.offset_m.unwrap_or_default()
     }

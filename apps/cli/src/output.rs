@@ -1,4 +1,4 @@
-//! What a command writes: known before any of it is in place, compared with all that was read, whole or not at all.
+//! Outputs of a command: known before any of them is in place, compared with all inputs, written whole or not at all.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, Write};
@@ -15,55 +15,58 @@ use crate::names::folded;
 use crate::placing::{Move, Refused, put_all};
 use crate::signals::Stoppable;
 
-/// The outputs of a command, or of one drawing of many.
+/// Outputs of a command, or of one drawing of many.
 ///
-/// Everything is written to drafts and compared with what was read and with one another; [`place`](Self::place) then
-/// renames all of them. What is dropped before leaves nothing behind.
+/// Everything is written to drafts and compared with inputs and other outputs; [`place`](Self::place) then renames all
+/// of them. Outputs that are dropped before leave nothing behind.
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     /// Every file that is known to be written, the reserved ones of the whole batch first.
     planned: Vec<Planned>,
-    /// How many of them are others' to write.
+    /// Number of these that others write.
     reserved: usize,
     ready: Vec<Ready>,
-    /// Folders that were made for the outputs, the outermost first.
+    /// Folders made for the outputs, the outermost first.
     made: Vec<PathBuf>,
 }
 
 #[derive(Clone, Debug)]
 struct Planned {
-    /// The option that asks for it, in words.
+    /// The option that requests it, in words.
     by: String,
-    /// As it was named.
+    /// Path as given.
     target: PathBuf,
     place: Place,
 }
 
-/// Where a file is to be, behind links.
+/// Final place of a file, with links followed.
 #[derive(Clone, Debug)]
 struct Place {
     path: PathBuf,
-    /// Of the file that is there already.
+    /// Identity of the existing file.
     file: Option<FileId>,
     folder: Option<FileId>,
-    /// Its name, [`folded`]: whether a disk tells case apart is not asked, so that a command is the same on all.
+    /// Its name, [`folded`]: case is ignored on every disk, so that a command behaves the same on all.
     name: String,
-    /// To be written as it is: a renamed file in the place of /dev/null would break the machine.
+    /// Whether it is written directly: a renamed file in place of /dev/null would break the machine.
     device: bool,
 }
 
 impl Place {
     /// Fails early and clearly when nothing can be written there.
-    fn of(target: &Path) -> Outcome<Self> {
+    fn resolve(target: &Path) -> Outcome<Self> {
         check_target(target)?;
         let there = fs::metadata(target).ok();
         let device = is_device(target, there.as_ref());
         if there.is_none() && fs::symlink_metadata(target).is_ok() {
             let what = "is a link that leads to no file; make the file that it names, or remove the link";
-            return Err(Failure::at(target, what));
+            return Err(Failure::bad_file(target, what));
         }
         if !device && there.as_ref().is_some_and(|m| m.permissions().readonly()) {
-            return Err(Failure::at(target, "is write-protected; give another name or lift the protection"));
+            return Err(Failure::bad_file(
+                target,
+                "is write-protected; give another name or lift the protection",
+            ));
         }
         let path = fs::canonicalize(target).unwrap_or_else(|_| {
             let folder = folder_of(target);
@@ -71,8 +74,8 @@ impl Place {
             folder.join(target.file_name().unwrap_or_default())
         });
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let file = there.filter(Metadata::is_file).and_then(|_| FileId::of(target));
-        Ok(Self { name: folded(&name), file, folder: FileId::of(folder_of(&path)), path, device })
+        let file = there.filter(Metadata::is_file).and_then(|_| FileId::from_path(target));
+        Ok(Self { name: folded(&name), file, folder: FileId::from_path(folder_of(&path)), path, device })
     }
 
     fn is(&self, other: &Self) -> bool {
@@ -84,7 +87,7 @@ impl Place {
     }
 }
 
-/// What is written and not yet in place.
+/// A file that is written and not yet in place.
 #[derive(Debug)]
 struct Ready {
     target: PathBuf,
@@ -95,13 +98,13 @@ struct Ready {
 #[derive(Debug)]
 enum Written {
     File(Draft),
-    /// For a device.
+    /// Bytes for a device.
     Bytes(Vec<u8>),
 }
 
 impl Outputs {
-    /// Outputs by the option that names each, before anything is computed. `inputs` are those that options name; what
-    /// these name in turn is known when it is read.
+    /// Plans outputs by the option that names each, before anything is computed. `inputs` are those that options name;
+    /// files that these name in turn are known when they are read.
     pub(crate) fn new(named: &[(&str, Option<&PathBuf>)], inputs: &[&PathBuf]) -> Outcome<Self> {
         inputs.iter().for_each(|path| inputs::announce(path));
         let mut outputs = Self::default();
@@ -111,27 +114,28 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Those of one drawing of a batch: the batch's own are others.
+    /// Returns the outputs of one drawing of a batch, which differ from the batch's own.
     pub(crate) fn of_one(&self) -> Self {
         let (planned, reserved) = (self.planned.clone(), self.planned.len());
         Self { planned, reserved, ready: Vec::new(), made: Vec::new() }
     }
 
-    /// One more file, before anything is computed: refused if it is an input or another output, or cannot be written.
+    /// Plans one more file, before anything is computed: refused if it is an input or another output, or cannot be
+    /// written.
     pub(crate) fn plan(&mut self, by: &str, target: &Path) -> Outcome {
         self.add(by, target)?;
         let Some(Planned { place, .. }) = self.planned.last().filter(|p| !p.place.device) else {
             return Ok(());
         };
-        // An empty draft tells what the rights say, before the work rather than after it.
+        // An empty draft shows whether the rights suffice, before the work rather than after it.
         Draft::create(folder_of(&place.path)).map(drop).map_err(|e| Failure::io(target, "written", &e))
     }
 
     fn add(&mut self, by: &str, target: &Path) -> Outcome {
-        let place = Place::of(target)?;
+        let place = Place::resolve(target)?;
         if let Some(other) = self.planned.iter().find(|p| p.place.is(&place)) {
             let what = format_args!("{} and {by} name the same file; give one another name", other.by);
-            return Err(Failure::at(target, what));
+            return Err(Failure::bad_file(target, what));
         }
         let planned = Planned { by: by.to_owned(), target: target.to_path_buf(), place };
         planned.is_no_input()?;
@@ -139,10 +143,10 @@ impl Outputs {
         Ok(())
     }
 
-    /// Makes a folder for many files, with those above it. They go again if nothing comes to lie in them.
+    /// Makes a folder for many files, with those above it. They are removed again if they stay empty.
     pub(crate) fn folder(&mut self, folder: &Path) -> Outcome {
         if folder.exists() && !folder.is_dir() {
-            return Err(Failure::at(folder, "is a file, but several files need a folder; name one"));
+            return Err(Failure::bad_file(folder, "is a file, but several files need a folder; name one"));
         }
         let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
         let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
@@ -154,8 +158,7 @@ impl Outputs {
 
     /// Writes a file, which is not yet in place.
     ///
-    /// A link is followed: what it points to is replaced. A device or a pipe (`/dev/stdout`) is written as it is, at the
-    /// end.
+    /// A link is followed: its target is replaced. A device or a pipe (`/dev/stdout`) is written directly, at the end.
     pub(crate) fn write(
         &mut self,
         by: &str,
@@ -178,10 +181,10 @@ impl Outputs {
         Ok(())
     }
 
-    /// Whether nothing that is to be written was read: what is read names more files than the options do.
+    /// Checks that no file to be written was read: inputs name more files than the options do.
     pub(crate) fn check(&self) -> Outcome {
         self.planned.iter().skip(self.reserved).try_for_each(|p| {
-            let place = Place::of(&p.target)?;
+            let place = Place::resolve(&p.target)?;
             Planned { place, ..p.clone() }.is_no_input()
         })
     }
@@ -191,7 +194,7 @@ impl Outputs {
         self.check()?;
         let (files, devices): (Vec<Ready>, Vec<Ready>) =
             std::mem::take(&mut self.ready).into_iter().partition(|r| matches!(r.what, Written::File(_)));
-        // Devices first: what they refuse leaves no file.
+        // Devices first: if one refuses, no file remains.
         for Ready { target, what, .. } in &devices {
             let Written::Bytes(bytes) = what else { continue };
             let write = || File::options().write(true).open(target)?.write_all(bytes);
@@ -205,7 +208,7 @@ impl Outputs {
         }
         let refused = |Refused { file, error }| Failure::io(&targets[file], "written", &error);
         put_all(&moves).map_err(refused)?;
-        // The folders themselves must last as what lies in them.
+        // The folders themselves must last like the files in them.
         let outside = self.made.iter().map(|folder| folder_of(folder));
         outside.for_each(|folder| drop(disk::sync_folder(folder)));
         Ok(())
@@ -214,7 +217,7 @@ impl Outputs {
 
 impl Drop for Outputs {
     fn drop(&mut self) {
-        // Only those that are empty go.
+        // Only empty ones are removed.
         self.ready.clear();
         self.made.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
     }
@@ -226,7 +229,7 @@ impl Planned {
             Some(input) => {
                 let (by, input) = (&self.by, input.display());
                 let what = format_args!("{by} would replace the input {input}; give another name");
-                Err(Failure::at(&self.target, what))
+                Err(Failure::bad_file(&self.target, what))
             }
             None => Ok(()),
         }
@@ -244,7 +247,7 @@ pub(crate) fn write_one(
     outputs.place()
 }
 
-/// A complete draft of a file, with the rights of the file that it is to replace.
+/// Makes a complete draft of a file, with the rights of the file that it is to replace.
 fn draft_of(
     place: &Path,
     target: &Path,
@@ -260,7 +263,7 @@ fn draft_of(
     let mut out = BufWriter::new(Stoppable(file));
     write(&mut out).map_err(|e| write_failed(target, e))?;
     let Stoppable(file) = out.into_inner().map_err(|e| failed(e.error()))?;
-    // So that a crash of the machine does not leave an empty file under the target's name.
+    // Otherwise a crash of the machine could leave an empty file under the target's name.
     file.sync().map_err(|e| failed(&e))?;
     Ok(draft)
 }
@@ -274,31 +277,31 @@ fn is_device(target: &Path, there: Option<&Metadata>) -> bool {
         || there.is_some_and(|m| !m.is_file() && !m.is_dir())
 }
 
-/// Whose fault it is that something could not be written.
+/// Makes the failure of a write that did not succeed.
 pub(crate) fn write_failed(target: &Path, error: WriteError) -> Failure {
     match error {
         WriteError::Io(e) => Failure::io(target, "written", &e),
         e @ WriteError::Model { .. } => Failure::Bug(format!("{}: {e}", target.display())),
-        e => Failure::at(target, e),
+        e => Failure::bad_file(target, e),
     }
 }
 
-/// Whether a name can be a file's.
+/// Whether a name can be that of a file.
 pub(crate) fn check_target(target: &Path) -> Outcome {
     if target.as_os_str() == "-" {
-        return Err(Failure::at(
+        return Err(Failure::bad_file(
             target,
             "is no name for a result; name a file (./- for one that is called -)",
         ));
     }
     if target.file_name().is_none() || target.is_dir() {
-        return Err(Failure::at(target, "is a folder; name a file in it"));
+        return Err(Failure::bad_file(target, "is a folder; name a file in it"));
     }
     let folder = folder_of(target);
     if !folder.is_dir() {
         let what =
             if folder.exists() { "is a file, not a folder" } else { "does not exist; create it first" };
-        return Err(Failure::at(target, format_args!("the folder {} {what}", folder.display())));
+        return Err(Failure::bad_file(target, format_args!("the folder {} {what}", folder.display())));
     }
     Ok(())
 }
@@ -307,7 +310,7 @@ pub(crate) fn check_target(target: &Path) -> Outcome {
 mod tests {
     use super::*;
 
-    /// Two files, of which the second cannot be put in place: the first one's old bytes, if any, come back.
+    /// If the second of two files cannot be put in place, the old bytes of the first, if any, are restored.
     #[test]
     fn a_file_that_cannot_be_put_in_place_takes_the_others_back() {
         let folder = std::env::temp_dir().join(format!("burgeon-outputs-{}", std::process::id()));
@@ -319,7 +322,7 @@ mod tests {
             for path in [&a, &b] {
                 outputs.write("-o", path, |out| Ok(out.write_all(b"new")?)).expect("a draft");
             }
-            // Somebody takes the second draft away.
+            // Somebody removes the second draft.
             let draft = fs::read_dir(&folder)
                 .expect("a folder")
                 .flatten()

@@ -55,7 +55,7 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     Ok(())
 }
 
-/// The model of a file, or of the plant of a file of structure, with what is to be told of it.
+/// Returns the model of a file, or of the plant of a file of structure, with the warnings about it.
 fn model_of(args: &RenderArgs, axes: &ExportSpec, machine: &Machine) -> Outcome<(Model, Vec<Warning>)> {
     let path = &args.input;
     let (input, kind) = files::open(path)?;
@@ -76,16 +76,16 @@ fn model_of(args: &RenderArgs, axes: &ExportSpec, machine: &Machine) -> Outcome<
     Ok((made.model, told.warnings))
 }
 
-/// Pictures are PNG, whatever the name says: so the name must say it.
+/// Checks the name of a picture: pictures are PNG whatever the name, so the name must agree.
 pub(crate) fn check_name(path: &Path) -> Outcome {
     if files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("png")) {
         Ok(())
     } else {
-        Err(Failure::at(path, "pictures are written as PNG; end the name with .png"))
+        Err(Failure::bad_file(path, "pictures are written as PNG; end the name with .png"))
     }
 }
 
-/// A report's item about a model.
+/// Makes a report's item about a model.
 pub(crate) fn model_item(model: &Model, output: &Path, warnings: &[Warning]) -> ItemReport {
     let counts = Counts {
         vertices: model.vertex_count() as u64,
@@ -111,11 +111,11 @@ pub(crate) fn write(outputs: &mut Outputs, by: &str, path: &Path, picture: &Pict
     })
 }
 
-/// Points are drawn as small tetrahedra.
+/// Replaces points by small tetrahedra.
 pub(crate) fn with_dots(mut model: Model) -> Model {
     let size = model.bounds().size().max_element() * 0.0022;
     for part in model.parts.iter_mut().filter(|p| p.mesh.triangles.is_empty()) {
-        // More than 40,000 dots show nothing more.
+        // More than 40,000 dots show no more detail.
         let step = part.mesh.positions.len().div_ceil(40_000).max(1);
         let mut dots = TriMesh::default();
         for (row, p) in part.mesh.positions.iter().enumerate().step_by(step) {

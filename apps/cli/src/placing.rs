@@ -1,7 +1,7 @@
-//! Complete drafts get their names, all of them or none.
+//! Naming of complete drafts, all of them or none.
 //!
-//! Several are first listed in a file (a *set*). From then on the set counts as written: whoever writes into one of its
-//! folders after this process was killed, or the power failed, finishes it ([`crate::sweep`]).
+//! Several are first listed in a file (a *set*). From then on the set counts as written: a process that writes into one
+//! of its folders after this one was killed, or the power failed, finishes it ([`crate::sweep`]).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,11 +15,11 @@ use crate::draft::Draft;
 use crate::lease::{self, Role};
 use crate::sweep::{Entry, Set, Stamp};
 
-/// Held while names are given: to read by those who give them, to write by the one who ends the program.
+/// Held while names are given: for reading by those who give them, for writing by the thread that ends the program.
 static PLACING: RwLock<()> = RwLock::new(());
 /// Longest time that the end of the program waits for names that are being given.
 const PATIENCE: Duration = Duration::from_millis(300);
-/// How often it looks.
+/// Interval between two checks.
 const GLANCE: Duration = Duration::from_millis(2);
 
 /// A complete draft and the path that it is to have.
@@ -29,16 +29,16 @@ pub(crate) struct Move {
     pub(crate) place: PathBuf,
 }
 
-/// What stood in the place of a file that was renamed into it.
+/// Previous file in the place of a renamed one.
 #[derive(Debug)]
 enum Before {
     Nothing,
     Kept(Draft),
-    /// On a disk without hard links, or another's.
+    /// On a disk without hard links, or of another owner.
     Lost,
 }
 
-/// Why files are not in place.
+/// Reason why files are not in place.
 #[derive(Debug)]
 pub(crate) struct Refused {
     /// The number of the file at which it was found.
@@ -46,16 +46,16 @@ pub(crate) struct Refused {
     pub(crate) error: io::Error,
 }
 
-/// Gives all drafts their names, on the disk when it returns, or leaves everything as it was.
+/// Gives all drafts their names, on the disk when it returns, or restores everything.
 pub(crate) fn put_all(moves: &[Move]) -> Result<(), Refused> {
     let _placing = PLACING.read().unwrap_or_else(PoisonError::into_inner);
-    let before: Vec<Before> = moves.iter().map(Before::of).collect();
+    let before: Vec<Before> = moves.iter().map(Before::keep).collect();
     let folders: BTreeSet<&Path> = moves.iter().filter_map(|m| m.place.parent()).collect();
     let sync = || folders.iter().try_for_each(|f| disk::sync_folder(f));
     let last = |error| Refused { file: moves.len().saturating_sub(1), error };
     let list = match moves {
         [_, _, ..] => {
-            // A list that is on the disk names drafts that are there, too.
+            // A list on the disk may name only drafts that are on the disk, too.
             sync().map_err(last)?;
             Some(List::write(moves).map_err(last)?)
         }
@@ -81,16 +81,16 @@ fn put_each(moves: &[Move], placed: &mut usize) -> Result<(), Refused> {
 }
 
 impl Before {
-    fn of(m: &Move) -> Self {
+    fn keep(m: &Move) -> Self {
         match fs::symlink_metadata(&m.place) {
             Ok(_) => m.draft.keeping(&m.place).map_or(Self::Lost, Self::Kept),
             Err(_) => Self::Nothing,
         }
     }
 
-    /// Brings it back. The new file is a draft again, until the list is gone that names it.
+    /// Restores the previous file. The new file is a draft again, until the list that names it is gone.
     fn restore(self, m: &Move) {
-        // Nobody is left to be told of an error but the one that led here.
+        // Only the original error is reported.
         match self {
             Self::Nothing => drop(m.draft.take_back(&m.place)),
             Self::Kept(kept) => drop(m.draft.take_back(&m.place).and_then(|()| kept.put(&m.place))),
@@ -99,10 +99,10 @@ impl Before {
     }
 }
 
-/// The list of a set on the disk.
+/// List of a set on the disk.
 struct List {
     path: PathBuf,
-    /// Files in the other folders of the set that say where the list is.
+    /// Files in the other folders of the set that point to the list.
     pointers: Vec<PathBuf>,
 }
 
@@ -135,7 +135,7 @@ impl List {
         write(&moves[0].draft.lease().folder, &self.path, &Set { files })
     }
 
-    /// Removes it. What stays nevertheless is found to be finished by the next command.
+    /// Removes it. If it remains nevertheless, the next command finds it finished.
     fn end(self) {
         std::iter::once(&self.path).chain(&self.pointers).for_each(|path| drop(disk::remove(path)));
     }
@@ -150,7 +150,7 @@ impl Move {
         };
         let name = |path: &Path| path.file_name().unwrap_or_default().to_os_string();
         let (draft, place) = (name(self.draft.path()), name(&self.place));
-        Ok(Entry { folder, draft, place, before: Stamp::of(&self.place) })
+        Ok(Entry { folder, draft, place, before: Stamp::read(&self.place) })
     }
 }
 
@@ -164,8 +164,8 @@ fn write(folder: &Path, path: &Path, content: &impl serde::Serialize) -> io::Res
     disk::sync_folder(folder)
 }
 
-/// Removes what is half-written, for the end of the program; a set that is being put in place is waited for. Where that
-/// takes too long the next command finishes it.
+/// Removes half-written files at the end of the program; waits for a set that is being put in place. If that takes too
+/// long, the next command finishes it.
 pub(crate) fn leave_nothing() {
     let end = Instant::now() + PATIENCE;
     loop {
@@ -181,7 +181,7 @@ pub(crate) fn leave_nothing() {
     }
 }
 
-/// [`leave_nothing`] where nothing may be waited for: the caller may hold what it takes.
+/// Calls [`leave_nothing`] if it need not wait: the caller may hold the lock.
 pub(crate) fn abandon() {
     if let Ok(guard) = PLACING.try_write() {
         std::mem::forget(guard);
@@ -201,8 +201,9 @@ mod tests {
     use crate::output::Outputs;
     use crate::sweep;
 
-    /// Files of a set in two folders, one that was there and one that was not in each.
+    /// Files of a set in two folders, an existing one and a new one in each.
     const NAMES: [&str; 4] = ["here/a.glb", "here/b.png", "there/c.json", "there/d.csv"];
+    /// Whether each file of the set exists before.
     const OLD: [bool; 4] = [true, false, false, true];
 
     struct Place(PathBuf);
@@ -217,7 +218,7 @@ mod tests {
             Self(fs::canonicalize(folder).expect("it is there"))
         }
 
-        /// Everything as it is before the set is written.
+        /// Restores the state before the set is written.
         fn reset(&self) {
             for name in ["here", "there", "held"] {
                 for entry in fs::read_dir(self.0.join(name)).expect("a folder").flatten() {
@@ -238,15 +239,15 @@ mod tests {
             written.and_then(|()| outputs.place()).is_ok()
         }
 
-        /// What the next command finds that writes into these folders.
+        /// Sweeps these folders as the next command that writes into them does.
         fn sweep(&self, folders: &[&str]) {
             for folder in folders {
-                let (lease, _) = Lease::of(&self.0.join(folder)).expect("a lock");
+                let (lease, _) = Lease::acquire(&self.0.join(folder)).expect("a lock");
                 sweep::sweep(&lease);
             }
         }
 
-        /// Makes what no lock protects older than it may be.
+        /// Ages files that no lock protects beyond the limit.
         fn grow_old(&self) {
             let then = SystemTime::now() - Duration::from_secs(48 * 60 * 60);
             for path in self.left() {
@@ -255,17 +256,17 @@ mod tests {
             }
         }
 
-        /// Hidden files.
+        /// Returns hidden files.
         fn left(&self) -> Vec<PathBuf> {
             let folders =
                 ["here", "there"].map(|f| fs::read_dir(self.0.join(f)).expect("a folder").flatten());
             let all = folders.into_iter().flatten();
-            all.filter(|e| e.file_name().to_str().is_some_and(|n| Role::of(n).is_some()))
+            all.filter(|e| e.file_name().to_str().is_some_and(|n| Role::from_file_name(n).is_some()))
                 .map(|e| e.path())
                 .collect()
         }
 
-        /// Whether all files are new; none of them is, otherwise.
+        /// Whether all files are new; otherwise asserts that none is.
         fn is_new(&self, names: &[&str], at: &str) -> bool {
             let is = |name: &&str| fs::read_to_string(self.0.join(name)).ok();
             let now: Vec<Option<String>> = names.iter().map(is).collect();
@@ -285,7 +286,7 @@ mod tests {
         }
     }
 
-    /// Whether every call of a set was tried, calling `test` with each.
+    /// Tries every call of a set, calling `test` with each, and returns whether it did.
     fn each_call(fault: Fault, place: &Place, names: &[&str], mut test: impl FnMut(usize, bool) -> bool) {
         for call in 0.. {
             assert!(call < 500, "no end");
@@ -329,7 +330,7 @@ mod tests {
             (state >> 33) as usize % most
         };
         for names in [&NAMES[..1], &NAMES[..2], &NAMES[..]] {
-            // Whichever folder is written into first.
+            // In whichever order the folders are written into.
             for next in [["here", "there"], ["there", "here"]] {
                 for _ in 0..6 {
                     let (mut new, mut old) = (0, 0);

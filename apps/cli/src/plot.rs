@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use burgeon::formats::PngCache;
 use burgeon::glam::DVec3;
+use burgeon::mesh::{PointClass, PointCloud};
 use burgeon::scan::{FoundTree, Plot, find_plot};
 use burgeon::{
     Digest, ItemReport, Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, UpAxis, make_tree_of_plot,
@@ -19,13 +20,13 @@ use crate::plot_map::map_of;
 use crate::scan::{Read, failure, inputs_of, options_of, read};
 use crate::{checks, files, inputs, picture, report, say};
 
-/// A row of the inventory, which is also what lies beside each tree, so that a run that was stopped goes on.
+/// A row of the inventory, which is also stored next to each tree, so that an interrupted run can continue.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Row {
-    /// Of the tree's points, the options and the version: a tree of the same is not made again.
+    /// Digest of the tree's points, the options and the version: a tree with the same digest is not made again.
     made_from: String,
     tree: String,
-    /// Where it stands, in the coordinates and the unit of the scan: the two that are not up.
+    /// Position in the coordinates and the unit of the scan: the two that are not up.
     place: [f64; 2],
     points: usize,
     height_m: f64,
@@ -38,12 +39,12 @@ struct Row {
     crown_projection_m2: f64,
     explained: f64,
     pipe_source: String,
-    /// Its crown ends where the cloud does.
+    /// Whether its crown ends where the cloud does.
     is_cut: bool,
     warnings: Vec<String>,
 }
 
-/// What the plot has, in the report.
+/// Figures of the plot, in the report.
 #[derive(Debug, Serialize)]
 struct PlotTally {
     points: usize,
@@ -63,7 +64,7 @@ struct PlotRun {
     trees: Vec<Row>,
 }
 
-/// A plot that is made.
+/// A plot in the making.
 struct Making<'a> {
     args: &'a ScanArgs,
     folder: &'a Path,
@@ -77,7 +78,7 @@ pub(crate) fn scan_all(args: &ScanArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let folder = args.output.as_deref().ok_or_else(|| Failure::Bug("--all without -o".into()))?;
     if files::extension(folder).is_some() && !folder.is_dir() {
-        return Err(Failure::at(folder, "--all makes many files; give a folder: -o FOLDER"));
+        return Err(Failure::bad_file(folder, "--all makes many files; give a folder: -o FOLDER"));
     }
     let mut outputs = Outputs::new(&[("--report", args.common.report.as_ref())], &inputs_of(args))?;
     let format = Some(files::plant_writable(Path::new("tree.glb"))?);
@@ -92,12 +93,12 @@ pub(crate) fn scan_all(args: &ScanArgs) -> Outcome {
     let mut read = read(args, &machine, &mut told)?;
     outputs.check()?;
     let plot = machine
-        .with_progress("stems", |_| find_plot(&read.points, &options.scan, &machine.run(), &mut told))
+        .with_progress("stems", |_| find_plot(&read.cloud, &options.scan, &machine.run(), &mut told))
         .map_err(|e| {
             let offset = read.origin.offset_m.unwrap_or_default();
             failure(&args.input, ScannedTreeError::from(e).in_scan(&read.axes, offset))
         })?;
-    read.points = vec![];
+    read.cloud = PointCloud::default();
     let making = Making { args, folder, machine: &machine, options, read, plot };
     let (rows, kept, mut run) = making.trees(&outputs)?;
     run.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
@@ -159,17 +160,18 @@ fn tell(whole: &PlotRun, folder: &Path, machine: &Machine) {
 }
 
 impl Making<'_> {
-    /// Each tree in turn; one that fails ends no other.
+    /// Makes each tree in turn; a failure does not stop the others.
     fn trees(&self, outputs: &Outputs) -> Outcome<(Vec<Row>, usize, RunReport)> {
         let mut run = RunReport::new("scan", self.args.seed);
         run.input.path = self.args.input.display().to_string();
-        run.input.offset_m = self.read.origin.told(&self.read.axes);
+        run.input.offset_m = self.read.origin.offset_in(&self.read.axes);
+        run.input.coordinate_system.clone_from(&self.read.facts.coordinate_system);
         let (mut rows, mut kept) = (vec![], 0);
         for k in 0..self.plot.trees.len() {
             self.machine.cancel.check()?;
             let name = format!("tree-{:03}", k + 1);
             let points = self.plot.points_of(k);
-            let made_from = self.made_from(&points);
+            let made_from = self.made_from(&points, &self.plot.classes_of(k));
             drop(points);
             if let Some(row) = self.kept(&name, &made_from) {
                 kept += 1;
@@ -246,7 +248,7 @@ impl Making<'_> {
         }
     }
 
-    /// A place in the coordinates of the scan: the two that are not up.
+    /// Returns a place in the coordinates of the scan: the two that are not up.
     fn place(&self, [x, z]: [f64; 2]) -> [f64; 2] {
         let offset = self.read.origin.offset_m.unwrap_or_default();
         let [a, b, c] = self.read.axes.place(DVec3::new(x, 0.0, z) + offset);
@@ -257,11 +259,14 @@ impl Making<'_> {
         self.folder.join(format!("{name}.{extension}"))
     }
 
-    /// What a tree is made from: its points, the options, the version.
-    fn made_from(&self, points: &[DVec3]) -> String {
+    /// The input of a tree: its points and their classes, the options, the version.
+    fn made_from(&self, points: &[DVec3], classes: &[PointClass]) -> String {
         let args = self.args;
         let mut digest = Digest::new();
         digest.add(points).add(&args.seed);
+        for class in classes {
+            digest.bytes(class.word().as_bytes());
+        }
         let options = format!(
             "{} {:?} {:?} {:?} {:?} {:?}",
             env!("CARGO_PKG_VERSION"),
@@ -275,14 +280,14 @@ impl Making<'_> {
         digest.hex()
     }
 
-    /// A tree of an earlier run, if it is whole and of the same.
+    /// Returns the row of a tree of an earlier run, if it is whole and has the same digest.
     fn kept(&self, name: &str, made_from: &str) -> Option<Row> {
         let row: Row = serde_json::from_slice(&inputs::read_own(&self.file(name, "json")).ok()?).ok()?;
         let is_whole = ["glb", "csv"].iter().all(|e| self.file(name, e).is_file());
         (row.made_from == made_from && is_whole).then_some(row)
     }
 
-    /// The inventory and the map.
+    /// Writes the inventory and the map.
     fn write_lists(&self, rows: &[Row], outputs: &mut Outputs) -> Outcome {
         let unit = self.args.axes.unit.word();
         let [a, b] = if self.read.axes.up == UpAxis::Y { ["x", "z"] } else { ["x", "y"] };

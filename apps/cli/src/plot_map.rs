@@ -5,10 +5,11 @@ use burgeon::scan::Plot;
 
 use crate::lettering::{put_dot, write_text};
 
-/// Pixels of the longer side, and of a margin.
+/// Longer side of the map, pixels.
 const LONG: f64 = 1200.0;
+/// Margin of the map, pixels.
 const MARGIN: f64 = 20.0;
-/// Colours of neighbours, told apart by people who see red and green alike, too (Okabe and Ito 2008, lightened).
+/// Colours of neighbours, distinguishable for people who confuse red and green, too (Okabe and Ito 2008, lightened).
 const COLOURS: [[u8; 3]; 7] = [
     [120, 190, 235],
     [240, 190, 90],
@@ -18,11 +19,12 @@ const COLOURS: [[u8; 3]; 7] = [
     [230, 150, 100],
     [215, 165, 195],
 ];
-/// What is no tree's.
+/// Colour of points that belong to no tree.
 const OTHER: [u8; 3] = [205, 205, 205];
+/// Colour of digits and of the marks of stems.
 const DARK: [u8; 3] = [40, 40, 40];
 
-/// Pixels of a pixel of a digit.
+/// Side of a dot of a digit, pixels.
 const DOT: i64 = 3;
 
 struct Map {
@@ -32,7 +34,8 @@ struct Map {
 }
 
 impl Map {
-    /// x to the right, and +Z of the plot (which is -Y of a scan with +Z up) downwards: as a map has north at its top.
+    /// Returns the pixel of a place: x to the right, and +Z of the plot (which is -Y of a scan with +Z up) downwards,
+    /// because a map has north at its top.
     fn pixel(&self, [x, z]: [f64; 2]) -> [i64; 2] {
         #[expect(clippy::cast_possible_truncation, reason = "a picture of some thousand pixels")]
         let at = |v: f64, low: f64| ((v - low) * self.scale + MARGIN) as i64;
@@ -48,7 +51,7 @@ impl Map {
     }
 }
 
-/// The map of a plot.
+/// Draws the map of a plot.
 pub(crate) fn map_of(plot: &Plot) -> Picture {
     let none = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let (low, high) = plot
@@ -59,7 +62,7 @@ pub(crate) fn map_of(plot: &Plot) -> Picture {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1240")]
     let [width, height] = size.map(|s| (s * scale + 2.0 * MARGIN).max(1.0) as u32);
     let mut map = Map { picture: Picture::filled(width, height, [255; 4]), low, scale };
-    // Trees over what is none.
+    // Trees over all other points.
     for is_tree in [false, true] {
         for (p, owner) in plot.owned().filter(|(_, owner)| owner.is_some() == is_tree) {
             let colour = owner.map_or(OTHER, |o| COLOURS[o % COLOURS.len()]);

@@ -1,13 +1,13 @@
-//! How plant and organs moved between scans, as reports and people are told.
+//! Motion of plant and organs between scans, for reports and people.
 
 use burgeon::bloom::{OrganStep, PoseDoubt, PoseStep, RigidMotion};
 use serde::Serialize;
 
-/// A turn about an axis and a shift of the place that it is about.
+/// A rotation about an axis and a translation of its centre.
 #[derive(Debug, Serialize)]
 struct Turn {
     turn_deg: f64,
-    /// Unit axis of the turn, +Y up.
+    /// Unit axis of the rotation, +Y up.
     axis: [f64; 3],
     move_mm: f64,
 }
@@ -21,12 +21,12 @@ impl From<&RigidMotion> for Turn {
 #[derive(Debug, Serialize)]
 struct OrganTold {
     organ: String,
-    /// About its joint, in the frame of the plant.
+    /// Rotation about its joint, in the frame of the plant.
     #[serde(flatten)]
     pose: Turn,
     /// Growth in size, 1 for none.
     scale: f64,
-    /// Growth in shape: what motion and size leave.
+    /// Growth in shape: the residual after motion and size.
     shape_mm: f64,
     residual_mm: f64,
     back_residual_mm: f64,
@@ -45,12 +45,12 @@ impl From<&OrganStep> for OrganTold {
     }
 }
 
-/// What happened from one scan to the next.
+/// Changes from one scan to the next.
 #[derive(Debug, Serialize)]
 pub(crate) struct PoseReport {
     from_day: f64,
     to_day: f64,
-    /// Of the whole plant about its foot; none where fewer than two organs are on both days.
+    /// Motion of the whole plant about its foot; `None` where fewer than two organs are on both days.
     plant: Option<Turn>,
     organs: Vec<OrganTold>,
     appeared: Vec<String>,
@@ -70,7 +70,7 @@ impl From<&PoseStep> for PoseReport {
     }
 }
 
-/// A warning for each step between scans whose organs may have been taken for one another.
+/// Returns a warning for each step between scans whose organs may have been confused.
 pub(crate) fn doubts(steps: &[PoseStep]) -> Vec<String> {
     let told = |step: &PoseStep| {
         let days = format!("from day {} to {}", step.from_day, step.to_day);
@@ -90,7 +90,7 @@ pub(crate) fn doubts(steps: &[PoseStep]) -> Vec<String> {
 }
 
 impl PoseReport {
-    /// Lines for people: one for the plant, one an organ.
+    /// Returns lines for people: one for the plant, one for each organ.
     pub(crate) fn lines(&self) -> Vec<String> {
         let mut head = format!("day {} to {}", self.from_day, self.to_day);
         if let Some(p) = &self.plant {

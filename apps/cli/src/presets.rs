@@ -13,12 +13,12 @@ use crate::{output, say};
 struct Row {
     preset: &'static str,
     species: String,
-    /// How it grows; `flower` of what `bloom run` opens.
+    /// Method of growth; `flower` for those that `bloom run` opens.
     method: &'static str,
     about: String,
 }
 
-/// A flower that opens: what the first lines of its file say.
+/// Describes a flower that opens, from the first lines of its file.
 fn flower(key: &'static str) -> Row {
     let text = bloom::preset_text(key).unwrap_or_default();
     let said: Vec<&str> = text.lines().map_while(|l| l.strip_prefix("# ")).collect();

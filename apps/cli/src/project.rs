@@ -16,7 +16,7 @@ use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
 
-/// The plants with their numbers, for errors.
+/// Lists the plants with their numbers, for errors.
 fn listed(document: &Document) -> String {
     let plants = document.plants().iter().zip(1..);
     let names = plants.map(|(p, n)| {
@@ -26,22 +26,24 @@ fn listed(document: &Document) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// The plant that `--plant` names or numbers (from 1, as in the project); without it the only one that has branches.
+/// Returns the plant that `--plant` names or numbers (from 1, as in the project); without it the only one that has
+/// branches.
 pub(crate) fn choose(path: &Path, document: &Document, wanted: Option<&str>) -> Outcome<PlantId> {
     let plants = document.plants();
     let Some(wanted) = wanted else {
         let mut shapable = plants.iter().filter(|p| p.settings().maker.branches());
         return match (shapable.next(), shapable.next()) {
             (Some(only), None) => Ok(only.id()),
-            (None, _) => {
-                Err(Failure::at(path, "holds no tree, drawing or flower, which alone have branches to edit"))
-            }
+            (None, _) => Err(Failure::bad_file(
+                path,
+                "holds no tree, drawing or flower, which alone have branches to edit",
+            )),
             (Some(_), Some(_)) => {
                 let line = format!(
                     "holds several plants; choose one by --plant NAME or number: {}",
                     listed(document)
                 );
-                Err(Failure::at(path, line))
+                Err(Failure::bad_file(path, line))
             }
         };
     };
@@ -51,22 +53,25 @@ pub(crate) fn choose(path: &Path, document: &Document, wanted: Option<&str>) -> 
     let chosen = match named.as_slice() {
         [only] => only,
         [] => numbered().ok_or_else(|| {
-            Failure::at(path, format_args!("holds no plant \"{wanted}\"; it holds {}", listed(document)))
+            Failure::bad_file(
+                path,
+                format_args!("holds no plant \"{wanted}\"; it holds {}", listed(document)),
+            )
         })?,
         _ => {
             let line = format!("holds several plants \"{wanted}\"; choose by number: {}", listed(document));
-            return Err(Failure::at(path, line));
+            return Err(Failure::bad_file(path, line));
         }
     };
     if !chosen.settings().maker.branches() {
         let s = chosen.settings();
         let line = format!("\"{}\" is a {}, which has no branches to edit", s.name, s.maker.word());
-        return Err(Failure::at(path, line));
+        return Err(Failure::bad_file(path, line));
     }
     Ok(chosen.id())
 }
 
-/// The project with more edits of a plant, each a step.
+/// Returns the project with more edits of a plant, each a step.
 pub(crate) fn edited(
     path: &Path,
     document: Document,
@@ -75,12 +80,12 @@ pub(crate) fn edited(
 ) -> Outcome<Document> {
     let mut editor = Editor::new(document);
     for edit in edits {
-        editor.run(ShapeCommand::Add(edit.edit).of(id)).map_err(|e| Failure::at(path, e))?;
+        editor.run(ShapeCommand::Add(edit.edit).for_plant(id)).map_err(|e| Failure::bad_file(path, e))?;
     }
     Ok(editor.document().clone())
 }
 
-/// The project with another seed and surface of a plant where they were asked for: to be made, not to be saved.
+/// Returns the project with another seed and surface of a plant where these were given: to be made, not to be saved.
 pub(crate) fn asked(
     path: &Path,
     document: &Document,
@@ -98,32 +103,37 @@ pub(crate) fn asked(
     };
     let mut commands = Vec::new();
     match settings.map(|s| &s.maker) {
-        Some(Maker::Sketch(s)) => commands.extend(asked(&s.skin).map(|s| SketchCommand::SetSkin(s).of(id))),
-        Some(Maker::Tree(t)) => commands.extend(asked(&t.skin).map(|s| TreeCommand::SetSkin(s).of(id))),
+        Some(Maker::Sketch(s)) => {
+            commands.extend(asked(&s.skin).map(|s| SketchCommand::SetSkin(s).for_plant(id)))
+        }
+        Some(Maker::Tree(t)) => {
+            commands.extend(asked(&t.skin).map(|s| TreeCommand::SetSkin(s).for_plant(id)))
+        }
         _ if asked(&SkinSpec::default()).is_some() => {
             let line = "holds a flower, whose surface is its species'; leave --detail, --sides and --no-textures out";
-            return Err(Failure::at(path, line));
+            return Err(Failure::bad_file(path, line));
         }
         _ => {}
     }
     let own = settings.map(|s| s.seed);
     if let Some(seed) = seed.map(Seed::new).filter(|s| Some(*s) != own) {
-        commands.push(PlantCommand::SetSeed(seed).of(id));
+        commands.push(PlantCommand::SetSeed(seed).for_plant(id));
     }
     for command in commands {
-        editor.run(command).map_err(|e| Failure::at(path, e))?;
+        editor.run(command).map_err(|e| Failure::bad_file(path, e))?;
     }
     Ok(editor.document().clone())
 }
 
-/// Makes one plant of a document, with the columns of wind and the coarser copies that are wanted.
+/// Makes one plant of a document, with the requested wind columns and coarser copies.
 pub(crate) fn make(
     (path, document, id): (&Path, &Document, PlantId),
     surface: &TreeSurfaceArgs,
     levels: &LevelSpec,
     machine: &Machine,
 ) -> Outcome<(Plant, Model, Levels, ItemReport)> {
-    let failed = |e: SceneError| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) };
+    let failed =
+        |e: SceneError| if e.is_cancelled() { Failure::Cancelled } else { Failure::bad_file(path, e) };
     let none = || Failure::Bug("no plant was made".into());
     let mut scene = SceneEvaluator::default();
     scene.set_wind(surface.skin.wind || surface.export.sway);
@@ -135,7 +145,7 @@ pub(crate) fn make(
     Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), levels, made.report()))
 }
 
-/// Writes a project, which `option` asks for.
+/// Writes a project, which `option` requests.
 pub(crate) fn save(outputs: &mut Outputs, option: &'static str, path: &Path, document: &Document) -> Outcome {
     let bytes = document::write_project(document, burgeon::VERSION)
         .map_err(|e| Failure::Bug(format!("the project cannot be written: {e}")))?;

@@ -18,15 +18,15 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{files, picture, project, report, say};
 
-/// Between two pictures of a film, hundredths of a second.
+/// Time between two pictures of a film, hundredths of a second.
 const FRAME_CS: u16 = 12;
-/// Nobody waits longer than this in a film, ms.
+/// Longest wait in a film, ms.
 const LONGEST_WAIT_MS: u32 = 700;
 /// Most pictures of a film: half a minute.
 const MOST_FRAMES: usize = 250;
-/// How long its end is looked at, hundredths of a second.
+/// Time for which its last picture is shown, hundredths of a second.
 const END_CS: u16 = 200;
-/// Side of a film that is given no size.
+/// Default side of a film, pixels.
 const FILM_SIDE: u32 = 360;
 
 /// The report of this command.
@@ -39,11 +39,11 @@ struct Replay {
     steps: usize,
     /// Edits that gestures made.
     edits: usize,
-    /// Of the plant that was worked on last.
+    /// Digest of the plant that was worked on last.
     digest: Option<String>,
-    /// The same as the record says; none where it says nothing.
+    /// Whether it equals that of the record; `None` where the record has none.
     same: Option<bool>,
-    /// Of the film.
+    /// Number of pictures of the film.
     frames: usize,
 }
 
@@ -63,11 +63,11 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     if let Some(film) = &args.film
         && !files::extension(film).is_some_and(|e| e.eq_ignore_ascii_case("gif"))
     {
-        return Err(Failure::at(film, "films are written as GIF; end the name with .gif"));
+        return Err(Failure::bad_file(film, "films are written as GIF; end the name with .gif"));
     }
     let path = args.record.as_path();
     let bytes = files::read_bytes(path, LIMITS.side_file)?;
-    let record = GestureRecord::read(&bytes).map_err(|e| Failure::at(path, e))?;
+    let record = GestureRecord::read(&bytes).map_err(|e| Failure::bad_file(path, e))?;
     let mut workspace = Workspace::default();
     let mut film = args.film.as_ref().map(|_| (Film::default(), Extent::new()));
     let came = machine.with_progress("replay", |_| {
@@ -91,7 +91,8 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     }
     let mut frames = 0;
     if let Some((path, (_, mut extent))) = args.film.as_ref().zip(film) {
-        let last = seen.ok_or_else(|| Failure::at(path, "there is nothing to be seen in this record"))?;
+        let last =
+            seen.ok_or_else(|| Failure::bad_file(path, "there is nothing to be seen in this record"))?;
         extent.add(&last);
         let mut spec = args.picture.spec(seed);
         if !args.given.has("size") {
@@ -129,18 +130,18 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     Ok(())
 }
 
-/// Which steps of a replay are pictures of a film, and where the hand was.
+/// Selection of the steps of a replay that are pictures of a film, and the pose of the hand.
 #[derive(Default)]
 struct Film {
     count: usize,
-    /// Of the film, and of the record, at the last step.
+    /// Times of the film, and of the record, at the last step.
     now_ms: u32,
     was_ms: u32,
     hand: Option<ShapePointer>,
 }
 
 impl Film {
-    /// What is seen after a step, where a picture is due.
+    /// Returns the model after a step, where a picture is due.
     fn see(&mut self, now: &Workspace, step: &GestureStep) -> Option<Model> {
         if let GestureDeed::Hand(hand) = &step.did {
             self.hand = match &hand.input {
@@ -161,7 +162,7 @@ impl Film {
     }
 }
 
-/// The points of many models that are furthest out, which is all that a camera asks of them.
+/// The outermost points of many models, which is all that a camera needs.
 struct Extent {
     ways: Vec<DVec3>,
     furthest: Vec<(f64, DVec3)>,
@@ -192,8 +193,8 @@ impl Extent {
     }
 }
 
-/// Draws a film: once more through the record, one picture at a time, by one camera that sees them all. The number of its
-/// pictures.
+/// Draws a film: replays the record once more, one picture at a time, with one camera that sees them all. Returns the
+/// number of its pictures.
 fn draw(
     path: &Path,
     record: &GestureRecord,
@@ -236,11 +237,11 @@ fn draw(
 fn failure_of(e: WorkspaceError, path: &Path) -> Failure {
     match e {
         WorkspaceError::Cancelled => Failure::Cancelled,
-        e => Failure::at(path, e),
+        e => Failure::bad_file(path, e),
     }
 }
 
-/// A pointed thing where the hand is, pointing as it points.
+/// Adds a pointed marker with the pose of the hand.
 fn with_hand(mut model: Model, hand: Option<ShapePointer>) -> Model {
     let Some(hand) = hand else { return model };
     let size = 0.035 * model.bounds().size().max_element();
@@ -264,21 +265,21 @@ fn with_hand(mut model: Model, hand: Option<ShapePointer>) -> Model {
     model
 }
 
-/// An animated picture that goes on for ever, in one palette: of a picture, only what differs from the one before.
+/// An animated picture that repeats without end, in one palette: of each picture, only the changes from the one before.
 struct Strip {
     encoder: gif::Encoder<Vec<u8>>,
     size: (u16, u16),
     palette: Vec<[u8; 3]>,
-    /// The colour of the palette that is nearest to one that was met, bits of both.
+    /// Number in the palette of the colour nearest to each one that occurred.
     nearest: BTreeMap<[u8; 3], u8>,
-    /// What is seen, and what waits until it is known how long it is seen.
+    /// The shown colours, and the frame that waits until its duration is known.
     shown: Vec<[u8; 3]>,
     waits: Option<gif::Frame<'static>>,
 }
 
-/// Number of what is not drawn again, the last one of a palette.
+/// Number in the palette of pixels that are not drawn again: the last one.
 const SAME: u8 = 255;
-/// Colours that differ by no more than this are one: a hand that moves changes all light a little.
+/// Largest difference of colours that count as equal: a moving hand changes all light a little.
 const ALIKE: u8 = 5;
 
 impl Strip {
@@ -300,7 +301,7 @@ impl Strip {
         *nearest.entry([r, g, b]).or_insert_with(|| {
             let away = |c: &[u8; 3]| {
                 let d = |a: u8, b: u8| i32::from(a.abs_diff(b)).pow(2);
-                // The eye sees green best, and blue worst.
+                // The eye is most sensitive to green, and least to blue.
                 3 * d(c[0], r) + 6 * d(c[1], g) + d(c[2], b)
             };
             let numbered = (0..SAME).zip(palette.iter());
@@ -321,7 +322,7 @@ impl Strip {
         let columns = |k: usize| k % width.max(1);
         let changed = || (0..width * height).filter(differs);
         let Some((top, bottom)) = changed().next().zip(changed().next_back()) else {
-            // Nothing moved: what is seen is seen longer.
+            // Nothing moved: the last picture is shown longer.
             if let Some(frame) = &mut self.waits {
                 frame.delay += FRAME_CS;
             }

@@ -1,4 +1,4 @@
-//! The report's way out, and the summary for people.
+//! Output of the report, and the summary for people.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Outputs;
 use crate::say;
 
-/// Writes the report where it was asked for and puts it in place with all other outputs of the command.
+/// Writes the report to the requested place and puts it in place with all other outputs of the command.
 pub(crate) fn finish(report: &impl Serialize, args: &CommonArgs, mut outputs: Outputs) -> Outcome {
     if args.report.is_some() || args.json {
         let text = serde_json::to_string_pretty(report)
@@ -19,7 +19,7 @@ pub(crate) fn finish(report: &impl Serialize, args: &CommonArgs, mut outputs: Ou
             outputs.write("--report", path, |out| Ok(writeln!(out, "{text}")?))?;
         }
         if args.json {
-            // Told before files are in place: what standard output refuses leaves none.
+            // Printed before files are in place: if standard output refuses it, no file remains.
             outputs.check()?;
             say::data(&text).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))?;
         }
@@ -27,7 +27,7 @@ pub(crate) fn finish(report: &impl Serialize, args: &CommonArgs, mut outputs: Ou
     outputs.place()
 }
 
-/// One line about a plant: where it is and what it has.
+/// Returns one line about a plant: its place and its parts.
 pub(crate) fn summary(item: &ItemReport, png: Option<&Path>) -> String {
     let c = &item.counts;
     let parts = [
@@ -45,7 +45,7 @@ pub(crate) fn summary(item: &ItemReport, png: Option<&Path>) -> String {
     format!("{made}: {}; {:.0} ms", parts.collect::<Vec<_>>().join(", "), item.timings_ms.total)
 }
 
-/// The report of a command that makes one thing.
+/// Makes the report of a command that makes one thing.
 pub(crate) fn of_one(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
     let mut run = RunReport::new(command, seed);
     run.input.path = input.to_owned();

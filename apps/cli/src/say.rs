@@ -1,4 +1,4 @@
-//! Lines for people. A closed pipe is no error.
+//! Lines for people. A closed pipe is not an error.
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write, stderr, stdout};
@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 pub(crate) use burgeon::grouped;
 
-/// A line on stdout for people; what stands in names of files and drawings cannot steer the terminal.
+/// Prints a line on stdout for people; names of files and drawings cannot control the terminal.
 pub(crate) fn line(text: &str) {
     let mut out = stdout().lock();
     match writeln!(out, "{}", printable(text)).and_then(|()| out.flush()) {
@@ -17,7 +17,7 @@ pub(crate) fn line(text: &str) {
     }
 }
 
-/// Why a [`line`] did not arrive, if one did not, but for a reader that went away.
+/// Returns the reason why a [`line`] did not arrive, if one did not, except for a reader that closed the pipe.
 pub(crate) fn lost() -> Option<io::Error> {
     LOST.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
@@ -25,7 +25,8 @@ pub(crate) fn lost() -> Option<io::Error> {
 /// The first error of [`line`].
 static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Text for other programs on stdout: that it did not arrive is an error, but for a reader that went away.
+/// Prints text for other programs on stdout: if it does not arrive, that is an error, except for a reader that closed
+/// the pipe.
 pub(crate) fn data(text: &str) -> io::Result<()> {
     let mut out = stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
@@ -34,7 +35,7 @@ pub(crate) fn data(text: &str) -> io::Result<()> {
     }
 }
 
-/// Control characters and those that turn the direction of writing become the replacement character.
+/// Replaces control characters and those that turn the direction of writing by the replacement character.
 fn printable(text: &str) -> String {
     let bad = |c: char| {
         c.is_control()
@@ -43,12 +44,12 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if bad(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
-/// `error: ...` on stderr; line breaks inside become spaces.
+/// Prints `error: ...` on stderr; line breaks inside become spaces.
 pub(crate) fn error(text: &str) {
     tagged("error", "31;1", text);
 }
 
-/// `warning: ...` on stderr; line breaks inside become spaces.
+/// Prints `warning: ...` on stderr; line breaks inside become spaces.
 pub(crate) fn warning(text: &str) {
     tagged("warning", "33;1", text);
 }
@@ -64,8 +65,8 @@ fn tagged(tag: &str, color: &str, text: &str) {
     };
 }
 
-/// A text as one line. Where it is longer than 400 characters, its longest words, such as names of files, keep their
-/// two ends only: what is said of them is not lost.
+/// Returns a text as one line. If it is longer than 400 characters, its longest words, such as names of files, keep
+/// only their two ends, so that the rest of the message is not lost.
 pub(crate) fn short(text: &str) -> String {
     const MOST: usize = 80;
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -92,12 +93,12 @@ pub(crate) fn short(text: &str) -> String {
     words.iter().map(ends).collect::<Vec<_>>().join(" ")
 }
 
-/// Whether a terminal is to get no colours: by <https://no-color.org>, or because it knows none.
+/// Whether a terminal gets no colours: by <https://no-color.org>, or because it supports none.
 fn plain(no_color: Option<&OsStr>, term: Option<&OsStr>) -> bool {
     no_color.is_some() || term.is_some_and(|t| t == "dumb")
 }
 
-/// `1 leaf`, `2 leaves`.
+/// Returns `1 leaf`, `2 leaves`.
 pub(crate) fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", grouped(n), if n == 1 { one } else { many })
 }

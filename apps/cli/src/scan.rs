@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::{ExportSpec, PngCache, StructureFormat};
+use burgeon::formats::{CloudFacts, ExportSpec, PngCache, StructureFormat};
 use burgeon::glam::DVec3;
+use burgeon::mesh::PointCloud;
 use burgeon::scan::{FoundTree, Interval, ScanTreeError, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{
@@ -21,22 +22,22 @@ use crate::origin::Origin;
 use crate::output::Outputs;
 use crate::{checks, files, grow, levels, picture, report, say};
 
-/// What became of the points.
+/// Figures of the points and the tree.
 #[derive(Debug, Serialize)]
 struct ScanTally {
     points: u64,
     ground: u64,
     noise: u64,
     others: u64,
-    /// Of leaves; 0 for a bare tree.
+    /// Number of leaves; 0 for a bare tree.
     leaves: u64,
     wood: u64,
     other_things: u64,
-    /// Trunks that were seen at breast height.
+    /// Number of trunks seen at breast height.
     stems: u64,
-    /// Of large pieces beyond gaps that were not bridged.
+    /// Points of large pieces beyond gaps that were not bridged.
     loose: u64,
-    /// The share of the tree's points near its wood or in its leaves, and for each tenth of the height from below.
+    /// Share of the tree's points near its wood or in its leaves, and the same for each tenth of the height from below.
     explained: f64,
     coverage: [Option<f64>; 10],
     bridges: u64,
@@ -49,11 +50,11 @@ struct ScanTally {
     /// `fitted`, `default` or `bound`.
     pipe_source: &'static str,
     pipe_scatter: f64,
-    /// Between which values the figures lie, 9 of 10 times.
+    /// Intervals of the figures at 90 %.
     intervals: Intervals,
-    /// Where the stem stood, in the axes of the scan, metres.
+    /// Position of the stem, in the axes of the scan, metres.
     foot_m: [f64; 3],
-    /// Whether there was a ground.
+    /// Whether a ground was found.
     ground_found: bool,
 }
 
@@ -71,7 +72,7 @@ struct ScanRun {
     scan: ScanTally,
 }
 
-/// The options of the search and of the surface, and what was odd in them.
+/// Returns the options of the search and of the surface, and warns of odd ones.
 pub(crate) fn options_of(args: &ScanArgs, told: &mut Report) -> Outcome<ScanTreeOptions> {
     let leaves = args.leaves.as_deref().map(|what| grow::read_leaves(what, told)).transpose()?;
     let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
@@ -82,7 +83,7 @@ pub(crate) fn options_of(args: &ScanArgs, told: &mut Report) -> Outcome<ScanTree
     })
 }
 
-/// Files that the options name and that are read.
+/// Returns the input files that the options name.
 pub(crate) fn inputs_of(args: &ScanArgs) -> Vec<&PathBuf> {
     let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
     inputs.into_iter().flatten().collect()
@@ -90,7 +91,9 @@ pub(crate) fn inputs_of(args: &ScanArgs) -> Vec<&PathBuf> {
 
 /// A cloud near its origin.
 pub(crate) struct Read {
-    pub(crate) points: Vec<DVec3>,
+    pub(crate) cloud: PointCloud,
+    /// Facts of its file.
+    pub(crate) facts: CloudFacts,
     pub(crate) axes: ExportSpec,
     pub(crate) origin: Origin,
     pub(crate) ms: f64,
@@ -100,12 +103,13 @@ pub(crate) fn read(args: &ScanArgs, machine: &Machine, told: &mut Report) -> Out
     // Scanners write +Z up.
     let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
     let opened = files::open_cloud(&args.input)?;
-    let (cloud, ms) = machine
-        .timed(|| machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, told)));
-    let mut points = cloud?.points;
+    let (cloud, ms) = machine.timed(|| {
+        machine.with_progress("reading", |_| files::read_cloud_with_facts(&args.input, opened, &axes, told))
+    });
+    let (mut cloud, facts) = cloud?;
     let mut origin = Origin::default();
-    origin.bring(&mut points, &axes, told);
-    Ok(Read { points, axes, origin, ms })
+    origin.bring(&mut cloud.points, &axes, told);
+    Ok(Read { cloud, facts, axes, origin, ms })
 }
 
 pub(crate) fn scan(args: &ScanArgs) -> Outcome {
@@ -128,7 +132,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     args.surface.check_used(&args.given, format, args.png.is_some())?;
     let mut told = Report::default();
     let mut options = options_of(args, &mut told)?;
-    let Read { points, axes, origin, ms: read_ms } = read(args, &machine, &mut told)?;
+    let Read { cloud, facts, axes, origin, ms: read_ms } = read(args, &machine, &mut told)?;
     outputs.check()?;
     options.scan.at = args.at.map(|[a, b]| {
         // The two coordinates that are not up.
@@ -141,11 +145,11 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         [p.x, p.z]
     });
     let (name, seed) = (files::stem(&args.input), Seed::new(args.seed));
-    let made = machine
-        .with_progress("scan", |_| make_tree_from_scan(&name, &points, &options, seed, &machine.run()));
+    let made =
+        machine.with_progress("scan", |_| make_tree_from_scan(&name, &cloud, &options, seed, &machine.run()));
     let offset = origin.offset_m.unwrap_or_default();
     let (mut made, found) = made.map_err(|e| failure(&args.input, e.in_scan(&axes, offset)))?;
-    drop(points);
+    drop(cloud);
     let levels = made.levels(&args.surface.export.levels(format), &machine.run());
     let levels = levels.map_err(|e| failure(&args.input, e.into()))?;
     let stood = offset + found.foot;
@@ -153,7 +157,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
-    checks::accept(&items, &args.checks).map_err(|f| f.of(&args.input))?;
+    checks::accept(&items, &args.checks).map_err(|f| f.in_file(&args.input))?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let form = Form::new(path, format, &args.surface.export, &args.axes);
         let whole = Whole { plant: &made.plant, model: made.model.clone(), levels };
@@ -176,7 +180,8 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let mut run = RunReport::new("scan", args.seed);
     run.engine = args.surface.export.report();
     run.input.path = args.input.display().to_string();
-    run.input.offset_m = origin.told(&axes);
+    run.input.offset_m = origin.offset_in(&axes);
+    run.input.coordinate_system = facts.coordinate_system;
     run.ok = 1;
     run.items = items;
     let scan = tally(&found, stood, &axes);
@@ -193,7 +198,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     Ok(())
 }
 
-/// What was found in the scan; `stood`: where the tree stood, in the coordinates of the scan.
+/// Returns the findings in the scan; `stood`: the position of the tree, in the coordinates of the scan.
 fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> ScanTally {
     let t = &found.tally;
     let metres = ExportSpec { up: axes.up, ..ExportSpec::default() };
@@ -231,7 +236,7 @@ const fn pair(i: Interval) -> [f64; 2] {
     [i.low, i.high]
 }
 
-/// Names the options that help below the warnings that they help with.
+/// Adds to warnings the options that help with them.
 fn name_options(item: &mut ItemReport, found: &FoundTree, axes: &ExportSpec, offset: DVec3) {
     let stem = found.other_stems.first().map(|&[x, z]| {
         let [a, b, c] = axes.place(DVec3::new(x, 0.0, z) + offset);
@@ -286,15 +291,15 @@ pub(crate) fn failure(path: &Path, error: ScannedTreeError) -> Failure {
     match error {
         ScannedTreeError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
         ScannedTreeError::Scan(e @ ScanTreeError::TooLarge(_)) => {
-            Failure::at(path, format_args!("{e}; --unit mm or --unit cm says the unit"))
+            Failure::bad_file(path, format_args!("{e}; --unit mm or --unit cm says the unit"))
         }
         ScannedTreeError::Scan(e @ ScanTreeError::TooSmall(_)) => {
-            Failure::at(path, format_args!("{e}; --unit m or --unit cm says the unit"))
+            Failure::bad_file(path, format_args!("{e}; --unit m or --unit cm says the unit"))
         }
-        ScannedTreeError::Scan(e @ ScanTreeError::NoStem) => Failure::at(
+        ScannedTreeError::Scan(e @ ScanTreeError::NoStem) => Failure::bad_file(
             path,
             format_args!("{e}; --up says which axis points up, --unit the unit, --at where the stem stands"),
         ),
-        other => Failure::at(path, other),
+        other => Failure::bad_file(path, other),
     }
 }

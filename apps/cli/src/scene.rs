@@ -14,9 +14,9 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{picture, say};
 
-/// The document of a project that is more than one drawing; none for all else.
+/// Returns the document of a project that is more than one drawing; `None` for all other files.
 pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
-    // By its name only: standard input can be opened once.
+    // Tested only by its name: standard input can be opened once.
     if !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("burgeon")) {
         return Ok(None);
     }
@@ -28,7 +28,7 @@ pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
     Ok(document.only_sketch().is_none().then_some(document))
 }
 
-/// Options that a scene's plants have settings for.
+/// Options for which a scene's plants have their own settings.
 const OF_ONE_DRAWING: [&str; 22] = [
     "seed",
     "split",
@@ -54,7 +54,7 @@ const OF_ONE_DRAWING: [&str; 22] = [
     "variation",
 ];
 
-/// Makes every plant that is not hidden and writes the scene as one model, with an entry of the report each.
+/// Makes every plant that is not hidden and writes the scene as one model, with an entry of the report for each.
 pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine: &Machine) -> Outcome {
     let given = &args.given;
     let line = "this is a scene, whose plants have their own settings; change them in the Studio";
@@ -66,10 +66,13 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         "a scene is written as it stands; export its plants from the Studio",
     )?;
     if document.plants().is_empty() {
-        return Err(Failure::at(path, files::EMPTY));
+        return Err(Failure::bad_file(path, files::EMPTY));
     }
     if document.plants().iter().all(|p| p.settings().hidden) {
-        return Err(Failure::at(path, "shows nothing: all of its plants are hidden; show one in the Studio"));
+        return Err(Failure::bad_file(
+            path,
+            "shows nothing: all of its plants are hidden; show one in the Studio",
+        ));
     }
     let mut outputs = Outputs::new(
         &[
@@ -95,7 +98,11 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let name = &plant.settings().name;
         let made = machine.with_progress(name, |_| scene.update(plant.id(), document, &machine.run()));
         made.map_err(|e| {
-            if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, format_args!("{name}: {e}")) }
+            if e.is_cancelled() {
+                Failure::Cancelled
+            } else {
+                Failure::bad_file(path, format_args!("{name}: {e}"))
+            }
         })?;
         report.items.extend(scene.get(plant.id()).map(|p| p.report()));
     }
@@ -105,7 +112,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let model = scene_model(document.name(), &plants);
     let structure = || {
         let [only] = seen.as_slice() else {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 path,
                 "holds several plants; a structure (MTG, OPF, QSM, SWC) or a robot (MJCF, URDF) is of one",
             ));
@@ -122,7 +129,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let goal = Goal::new("-o", out);
         let mut cache = PngCache::new();
         if let Some(gltf) = format.model().filter(|format| format.holds(Room::Instances)) {
-            // What stands there several times is written once.
+            // Models that occur several times are written once.
             files::write_gltf(&mut outputs, goal, gltf, |to| {
                 write_glb_scene(document.name(), &plants, &mut cache, to)
             })?;
@@ -137,7 +144,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let drawn = burgeon::render::render(&model, &args.picture.spec(1), &machine.run())?;
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
-    // Of several plants each tells how long it took to make; all their files are one.
+    // With several plants, each entry has its own time of making; all their files are one.
     if let [only] = &mut report.items[..] {
         only.timings_ms.total = machine.whole_ms();
     }

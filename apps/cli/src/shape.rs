@@ -1,4 +1,4 @@
-//! `burgeon shape`: edits by hand on a plant of any maker.
+//! `burgeon shape`: hand edits on a plant of any maker.
 
 use std::path::Path;
 
@@ -113,13 +113,13 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
     }
     match args.list {
-        // With --json standard output is the report, which has them.
+        // With --json, standard output is the report, which lists them.
         Some(_) if !args.common.json => list(&run.items[0].branches),
         _ => Ok(()),
     }
 }
 
-/// Fails on options that nothing uses.
+/// Fails on unused options.
 fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
     let plants = [
@@ -171,7 +171,7 @@ fn make(
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
     let stdin = inputs::is_stdin(what).then(|| files::peek(what)).transpose()?;
-    // A preset or a spec: of standard input, what is nothing else.
+    // A preset or a spec; from standard input, anything of no other kind.
     let piped = stdin.as_ref().map(|(_, start)| files::sniff(start));
     if is_preset || piped.map_or(is_spec, |kind| kind.is_none()) {
         no_project(args, what)?;
@@ -184,7 +184,7 @@ fn make(
         let options = TreeOptions { skin, levels: *levels, edits, ..TreeOptions::default() };
         let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
             TreeError::Cancelled(_) => Failure::Cancelled,
-            other => Failure::at(what, other),
+            other => Failure::bad_file(what, other),
         })?;
         let MadeTree { grown, model, levels, item, .. } = made;
         return Ok(Shaped { plant: grown.plant, model, levels, item, seed, edited: None });
@@ -198,13 +198,13 @@ fn make(
     }
     not_structure(args, "it is no such file")?;
     let (document, id) = match opened {
-        // It is made above.
+        // Handled above.
         (_, Kind::Structure(_)) => return Err(Failure::Bug("a plant that was read is no document".into())),
         (file, Kind::Drawing(format)) => {
             args.given.refuse(&["plant"], "projects (.burgeon)", "a drawing is one plant")?;
             let mut drawings = read_drawings(file, format, &files::stem(what));
-            let first = drawings.next().ok_or_else(|| Failure::at(what, "holds no drawing"))?;
-            let read = first.map_err(|e| Failure::at(what, e))?;
+            let first = drawings.next().ok_or_else(|| Failure::bad_file(what, "holds no drawing"))?;
+            let read = first.map_err(|e| Failure::bad_file(what, e))?;
             told.warnings.extend(read.warnings);
             let document = Document::from_drawing(&read.drawing);
             let id = project::choose(what, &document, None)?;
@@ -220,7 +220,7 @@ fn make(
                 "is a model ({}), which has no branches to edit; give a preset, a spec or a drawing",
                 format.word()
             );
-            return Err(Failure::at(what, what_it_is));
+            return Err(Failure::bad_file(what, what_it_is));
         }
     };
     let document = project::edited(what, document, id, edits)?;
@@ -239,7 +239,7 @@ fn skin_of(args: &ShapeArgs) -> Outcome<SkinSpec> {
     Ok(SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() })
 }
 
-/// Options of files of structure are for nothing else, and everything else needs edits.
+/// Fails on options of files of structure for anything else, which in turn needs edits.
 fn not_structure(args: &ShapeArgs, this: &str) -> Outcome {
     StructureArgs::refuse(&args.given, this)?;
     args.given.refuse(&["leaves"], "files of structure", this)?;
@@ -250,7 +250,7 @@ fn not_structure(args: &ShapeArgs, this: &str) -> Outcome {
     Ok(())
 }
 
-/// A plant of a file of structure.
+/// Makes a plant of a file of structure.
 fn measured(
     args: &ShapeArgs,
     (what, edits): (&Path, Vec<PlantEdit>),
@@ -260,7 +260,7 @@ fn measured(
     machine: &Machine,
 ) -> Outcome<Shaped> {
     let save = "is no project (.burgeon), which --save is for";
-    args.save.as_ref().map_or(Ok(()), |_| Err(Failure::at(what, save)))?;
+    args.save.as_ref().map_or(Ok(()), |_| Err(Failure::bad_file(what, save)))?;
     let leaves = args.leaves.as_deref().map(|what| grow::read_leaves(what, told)).transpose()?;
     let read = structure::read(what, file, format, &args.structure.spec(), told)?;
     let (plant, tally) = structure::choose(what, read, args.plant.as_deref())?;
@@ -269,14 +269,14 @@ fn measured(
     let StructureModel { made, foot } = structure::make(what, (plant, &tally), &options, seed, machine)?;
     let levels = made.levels(levels, &machine.run()).map_err(|stopped| match stopped {
         Stopped::Cancelled(_) => Failure::Cancelled,
-        Stopped::OverBudget(much) => Failure::at(what, much),
+        Stopped::OverBudget(much) => Failure::bad_file(what, much),
     })?;
     let MadePlant { plant, model, mut item, .. } = made;
     item.warnings.extend(structure::moved(foot));
     Ok(Shaped { plant, model, levels, item, seed, edited: None })
 }
 
-/// A flower in full bloom.
+/// Makes a flower in full bloom.
 fn flower(
     args: &ShapeArgs,
     (what, edits): (&Path, Vec<PlantEdit>),
@@ -295,7 +295,7 @@ fn flower(
     let run = machine.run();
     let failed = |stopped| match stopped {
         Stopped::Cancelled(_) => Failure::Cancelled,
-        Stopped::OverBudget(much) => Failure::at(what, much),
+        Stopped::OverBudget(much) => Failure::bad_file(what, much),
     };
     let day = (spec.opening_days, &spec.own_law());
     let made = make_flower(&spec.name, spec, day, &options, seed, &run).map_err(failed)?;
@@ -304,12 +304,12 @@ fn flower(
     Ok(Shaped { plant, model, levels, item, seed, edited: None })
 }
 
-/// Options of projects are for nothing else.
+/// Fails on options of projects for anything else.
 fn no_project(args: &ShapeArgs, what: &Path) -> Outcome {
     let option = args.plant.as_ref().map(|_| "--plant").or(args.save.as_ref().map(|_| "--save"));
     match option {
         Some(option) => {
-            Err(Failure::at(what, format_args!("is no project (.burgeon), which {option} is for")))
+            Err(Failure::bad_file(what, format_args!("is no project (.burgeon), which {option} is for")))
         }
         None => Ok(()),
     }
@@ -337,7 +337,7 @@ fn list(branches: &[BranchRow]) -> Outcome {
     out(&lines.join("\n"))
 }
 
-/// Where a branch points to, in words.
+/// Describes the direction of a branch in words.
 fn heading(d: DVec3) -> String {
     let mut words = Vec::new();
     if d.y.abs() > 0.5 {

@@ -1,7 +1,7 @@
-//! The end of the program on request: Ctrl-C, SIGTERM and SIGHUP, a limit of processor time (SIGXCPU). Where a limit of
-//! the size of files is met (SIGXFSZ), writing fails instead.
+//! The end of the program on request: Ctrl-C, SIGTERM and SIGHUP, a limit of processor time (SIGXCPU). At a limit of
+//! the size of files (SIGXFSZ), writing fails instead.
 //!
-//! A request cancels what is computed. What has not come back a moment later is not waited for: the program removes its
+//! A request cancels the computation. If it does not return a moment later, the program does not wait: it removes its
 //! drafts and ends, wherever it is.
 
 use std::io::{self, IsTerminal as _, Read, Write};
@@ -16,27 +16,28 @@ use crate::placing;
 
 /// Exit status of a program that was asked to end, as is usual in shells for Ctrl-C.
 pub(crate) const STATUS: u8 = 130;
-/// How long a computation has to come back by itself.
+/// Time in which a computation may return by itself.
 const GRACE: Duration = Duration::from_millis(400);
-/// How long the last line may take: nobody may be reading it.
+/// Time that the last line may take: nobody may be reading it.
 const LAST_LINE: Duration = Duration::from_millis(100);
 
 static TOKEN: LazyLock<CancelToken> = LazyLock::new(CancelToken::new);
-/// There is nothing to be cancelled, and nothing to be said.
+/// Whether there is nothing to cancel or to report, so that a request ends the program at once.
 static AT_ONCE: AtomicBool = AtomicBool::new(false);
+/// Whether the end was reported.
 static TOLD: AtomicBool = AtomicBool::new(false);
 
-/// Cancelled by the first request.
+/// Returns the token that the first request cancels.
 pub(crate) fn token() -> &'static CancelToken {
     &TOKEN
 }
 
-/// From now on the program ends with the first request, as one does that serves until it is stopped.
+/// Makes the first request end the program, as for a server that runs until it is stopped.
 pub(crate) fn end_at_once() {
     AT_ONCE.store(true, Ordering::Relaxed);
 }
 
-/// Listens to requests; before any thread is started.
+/// Listens to requests; called before any thread is started.
 pub(crate) fn listen() {
     #[cfg(unix)]
     limits();
@@ -44,7 +45,7 @@ pub(crate) fn listen() {
     let _ = ctrlc::set_handler(requested);
 }
 
-/// The first request cancels, and the second ends.
+/// Cancels at the first request, and ends at the second.
 fn requested() {
     let is_second = TOKEN.check().is_err();
     TOKEN.cancel();
@@ -61,7 +62,7 @@ fn end_later() {
     end();
 }
 
-/// Signals of limits are kept from all threads, which inherit this: then a file that grows too large is an error of its
+/// Blocks signals of limits for all threads, which inherit this: then a file that grows too large is an error of its
 /// writer, and one thread waits for the end of processor time.
 #[cfg(unix)]
 fn limits() {
@@ -92,19 +93,19 @@ fn end() -> ! {
     std::process::exit(STATUS.into());
 }
 
-/// Says once that the program was stopped.
+/// Reports once that the program was stopped.
 pub(crate) fn tell() {
     if TOLD.swap(true, Ordering::Relaxed) {
         return;
     }
     if io::stderr().is_terminal() {
-        // In the place of the progress line.
+        // Replaces the progress line.
         let _ = write!(io::stderr(), "\r\x1b[2K");
     }
     crate::say::error("stopped; files that were written are whole, nothing half-written was left");
 }
 
-/// What is read or written no more once the program is asked to end.
+/// A reader or writer that stops once the program is asked to end.
 #[derive(Debug)]
 pub(crate) struct Stoppable<T>(pub(crate) T);
 

@@ -43,7 +43,7 @@ pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     if report.failed > 0 { Err(Failure::Reported) } else { Ok(()) }
 }
 
-/// Fails on options that nothing uses.
+/// Fails on unused options.
 fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
     let given = &args.given;
     let folder = batch && args.output.is_some();
@@ -63,15 +63,15 @@ fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
     given.check_axes(args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes)))
 }
 
-/// Everything that is asked, read and checked before the first drawing.
+/// All inputs and options, read and checked before the first drawing.
 struct Job<'a> {
     args: &'a SketchArgs,
-    /// From --spec; without, the defaults or the project's own.
+    /// Settings of --spec; without it, the defaults or the project's own.
     spec: Option<SketchSpec>,
     classes: Classes,
-    /// From --leaf-template.
+    /// Leaf of --leaf-template.
     leaf: Option<LeafTemplate>,
-    /// From --materials.
+    /// Materials of --materials.
     materials: Option<Materials>,
 }
 
@@ -87,7 +87,7 @@ impl<'a> Job<'a> {
         Ok(Self { args, spec, classes, leaf, materials })
     }
 
-    /// The outputs are folders, rather than files.
+    /// Whether the outputs are folders, rather than files.
     fn is_batch(&self) -> Outcome<bool> {
         let many = self.args.inputs.len() > 1;
         let model = |e: &str| PlantFormat::from_extension(e).is_some();
@@ -110,7 +110,7 @@ impl<'a> Job<'a> {
         for (folder, path, option) in [(png, &self.args.png, "--png"), (qsm, &self.args.qsm, "--qsm")] {
             if folder.is_some() && folder != first {
                 let other = if output.is_some() { "-o" } else { "--png" };
-                return Err(Failure::at(
+                return Err(Failure::bad_file(
                     path.as_deref().unwrap_or(Path::new("")),
                     format_args!(
                         "{other} and {option} name a file and a folder; give two files or two folders"
@@ -121,7 +121,7 @@ impl<'a> Job<'a> {
         Ok(many || first.unwrap_or(false))
     }
 
-    /// What the project asks for, or the defaults; options of the command line win over both.
+    /// Returns the options of the project, or the defaults; options of the command line override both.
     fn options(&self, input: &Input) -> SketchOptions {
         let mut options = input.project.as_deref().map(SketchOptions::of_plant).unwrap_or_default();
         if let Some(spec) = &self.spec {
@@ -151,10 +151,10 @@ impl<'a> Job<'a> {
         report
     }
 
-    /// The one drawing of the one input.
+    /// Makes the only drawing of the only input.
     fn one(&self, machine: &Machine) -> Outcome<RunReport> {
         let input = &self.args.inputs[0];
-        // What cannot be written is told before what is in the way.
+        // An output that cannot be written is reported before an existing file in its place.
         self.args.output.as_deref().map(files::plant_writable).transpose()?;
         let outputs = [
             ("-o", self.args.output.as_ref()),
@@ -169,12 +169,12 @@ impl<'a> Job<'a> {
         let format = self.args.output.as_deref().map(plan).transpose()?;
         let (first, read_ms) = machine.timed(|| -> Outcome<(Input, Source)> {
             let mut drawings = open(input)?;
-            let first = drawings.next().ok_or_else(|| Failure::at(input, "holds no drawing"))?;
-            Ok((first.map_err(|e| Failure::at(input, e))?, drawings))
+            let first = drawings.next().ok_or_else(|| Failure::bad_file(input, "holds no drawing"))?;
+            Ok((first.map_err(|e| Failure::bad_file(input, e))?, drawings))
         });
         let (read, mut drawings) = first?;
         if drawings.next().is_some() {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 input,
                 "holds several drawings; give a folder: -o FOLDER (one model each)",
             ));
@@ -189,11 +189,11 @@ impl<'a> Job<'a> {
             of_many: false,
         };
         if let Some(path) = &self.args.split {
-            let document = self.split(&read, &machine.run()).map_err(|failure| failure.of(input))?;
+            let document = self.split(&read, &machine.run()).map_err(|failure| failure.in_file(input))?;
             project::save(&mut outputs, "--split", path, &document)?;
         }
         let clocked = (machine, [read_ms, machine.whole_ms()], &machine.run());
-        let made = self.made(&read, format, &machine.run()).map_err(|failure| failure.of(input))?;
+        let made = self.made(&read, format, &machine.run()).map_err(|failure| failure.in_file(input))?;
         let mut items = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
         items[0].timings_ms.total = machine.whole_ms();
         report.ok = 1;
@@ -219,7 +219,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Every file that options name.
+    /// Returns every file that options name.
     fn inputs(&self) -> Vec<&PathBuf> {
         let reading = &self.args.reading;
         let surface = &self.args.surface.skin.materials;
@@ -240,10 +240,10 @@ impl<'a> Job<'a> {
         Ok((made, levels))
     }
 
-    /// The drawing as a document in which each of its plants is one.
+    /// Returns the drawing as a document in which each of its plants is a separate one.
     fn split(&self, input: &Input, run: &Run<'_>) -> Outcome<Document> {
         let SketchOptions { spec, skin, classes, photo, .. } = self.options(input);
-        // A project has what its strokes and organs wear, its layers and its pictures.
+        // A project has the materials of its strokes and organs, its layers and its pictures.
         let mut document = Document::from_drawing(&input.read.drawing);
         if let Some(project) = input.project.as_deref() {
             document.dress(project);
@@ -251,14 +251,15 @@ impl<'a> Job<'a> {
         let [plant] = document.plants() else { return Err(Failure::Bug("a drawing is one plant".into())) };
         let (id, ids) = (plant.id(), plant.strokes().iter().map(|s| s.id).collect::<Vec<_>>());
         let mut commands = vec![
-            SketchCommand::SetSketch(Box::new(spec)).of(id),
-            SketchCommand::SetSkin(skin).of(id),
-            PlantCommand::SetSeed(self.seed(input.project.as_deref())).of(id),
+            SketchCommand::SetSketch(Box::new(spec)).for_plant(id),
+            SketchCommand::SetSkin(skin).for_plant(id),
+            PlantCommand::SetSeed(self.seed(input.project.as_deref())).for_plant(id),
         ];
-        commands.extend(photo.map(|p| SketchCommand::SetPhoto(Box::new(p)).of(id)));
+        commands.extend(photo.map(|p| SketchCommand::SetPhoto(Box::new(p)).for_plant(id)));
         let said = classes.iter().filter_map(|(&row, &class)| Some((*ids.get(row as usize)?, class)));
-        commands
-            .extend(said.map(|(stroke, class)| SketchCommand::SetClass(vec![stroke], Some(class)).of(id)));
+        commands.extend(
+            said.map(|(stroke, class)| SketchCommand::SetClass(vec![stroke], Some(class)).for_plant(id)),
+        );
         let mut editor = Editor::new(match &self.materials {
             Some(materials) => materials.on(document, id)?,
             None => document,
@@ -321,7 +322,7 @@ impl<'a> Job<'a> {
         Ok(items)
     }
 
-    /// Every drawing of every input, spread over threads; memory holds one drawing a thread.
+    /// Makes every drawing of every input, spread over threads; memory holds one drawing for each thread.
     fn batch(&self, machine: &Machine) -> Outcome<RunReport> {
         self.classes.fits_batch(self.args.reading.classes.as_deref())?;
         let mut outputs = Outputs::new(&[], &self.inputs())?;
@@ -429,21 +430,21 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The files of one plant.
+/// Files of one plant.
 struct Target {
     plant: Option<(PathBuf, PlantFormat)>,
     png: Option<PathBuf>,
     qsm: Option<PathBuf>,
-    /// One of a batch.
+    /// Whether it is one of a batch.
     of_many: bool,
 }
 
-/// Failures of a batch that are told on stderr.
+/// Most failures of a batch that are printed on stderr.
 const TOLD_FAILURES: usize = 20;
-/// Failures of a batch that are kept for the report: a file of noise may have millions of lines.
+/// Most failures of a batch that are kept for the report: a file of noise may have millions of lines.
 const LISTED_FAILURES: usize = 10_000;
 
-/// What came out of a batch so far.
+/// Results of a batch so far.
 #[derive(Default)]
 struct Done {
     ok: u64,
@@ -477,24 +478,24 @@ impl Done {
     }
 }
 
-/// One drawing of a batch, or why it could not be read.
+/// One drawing of a batch, or the reason why it could not be read.
 struct Next {
     index: u64,
-    /// Where it comes from, for messages.
+    /// Its origin, for messages.
     place: String,
-    /// Safe and unique in the folder.
+    /// A name that is safe and unique in the folder.
     name: String,
     read: Outcome<Input>,
     read_ms: f64,
 }
 
-/// A drawing, and the project that it lies in.
+/// A drawing, and the project that contains it.
 struct Input {
     read: ReadDrawing,
     project: Option<Box<DocumentPlant>>,
 }
 
-/// What a file gives: drawings one at a time, or the one of a project.
+/// Contents of a file: drawings one at a time, or the only one of a project.
 enum Source {
     Drawings(Drawings<files::Input>),
     Project(Option<Box<Input>>),
@@ -553,7 +554,7 @@ impl<'a> Queue<'a> {
     }
 }
 
-// Under the lock: the next drawing gets its number and its name, so that both are the same for any threads.
+// Under the lock: the next drawing gets its number and its name, so that both are the same for any number of threads.
 fn pull(queue: &Mutex<Queue<'_>>, machine: &Machine, progress: &Progress) -> Option<Next> {
     let mut queue = queue.lock().ok()?;
     let (next, read_ms) = machine.timed(|| queue.next());
@@ -581,11 +582,11 @@ fn open(path: &Path) -> Outcome<Source> {
             let project = Some(Box::new(plant.clone()));
             Ok(Source::Project(Some(Box::new(Input { read, project }))))
         }
-        (_, Kind::Model(format)) => Err(Failure::at(
+        (_, Kind::Model(format)) => Err(Failure::bad_file(
             path,
             format_args!("is a model ({}), not a drawing; `burgeon render` makes its picture", format.word()),
         )),
-        (_, Kind::Structure(format)) => Err(Failure::at(
+        (_, Kind::Structure(format)) => Err(Failure::bad_file(
             path,
             format_args!(
                 "is the structure of a plant ({}), not a drawing; `burgeon shape` makes a model of it",
@@ -595,8 +596,8 @@ fn open(path: &Path) -> Outcome<Source> {
     }
 }
 
-/// Whether an output names a folder: it is one, ends like one, or has no extension. `known` are the extensions
-/// of its files; anything else is refused rather than made a folder.
+/// Whether an output names a folder: it is one, ends like one, or has no extension. `known` are the extensions of its
+/// files; any other is refused rather than made a folder.
 fn names_folder(
     path: &Path,
     option: &str,
@@ -612,11 +613,11 @@ fn names_folder(
     }
     match files::extension(path) {
         None => Ok(true),
-        Some(e) if !known(e) => Err(Failure::at(
+        Some(e) if !known(e) => Err(Failure::bad_file(
             path,
             format_args!("{formats}; end {option} with one of them, or with / for a folder"),
         )),
-        Some(_) if many => Err(Failure::at(
+        Some(_) if many => Err(Failure::bad_file(
             path,
             format_args!("names one file for several drawings; give a folder: {option} FOLDER"),
         )),

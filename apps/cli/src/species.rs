@@ -24,38 +24,38 @@ pub(crate) fn species(command: &SpeciesCommand) -> Outcome {
     }
 }
 
-/// Trees are kept out of the fit where there are so many, and every so many-th of them.
+/// Least number of trees from which some are kept out of the fit, and the step between these.
 const KEPT_OUT: (usize, usize) = (6, 3);
-/// Chance gives a greater distance more often than this, or the trees differ.
+/// Probability below which a greater distance by chance means that the trees differ.
 const DIFFERENT: f64 = 0.05;
-/// Trees that are grown before their traits are taken: so few lie in the memory.
+/// Most trees in memory that are grown before their traits are measured.
 const AT_ONCE: usize = 16;
 
-/// One trait of one order, as the report tells it.
+/// One trait of one order, in the report.
 #[derive(Debug, Serialize)]
 struct TraitReport {
     order: usize,
     name: &'static str,
     unit: &'static str,
-    /// Values of the trees that were fitted.
+    /// Number of values of the fitted trees.
     count: usize,
     median: f64,
-    /// Nine of ten: by the ranks of values round the middle.
+    /// Interval at 90 %, by the ranks of values round the middle.
     median_interval: [f64; 2],
-    /// Trees that were grown against those that were fitted, and against those kept out; null where one of them lacks it.
+    /// Comparison of grown trees with fitted ones, and with those kept out; null where one of them lacks the trait.
     fitted: Option<Compared>,
     kept_out: Option<Compared>,
 }
 
-/// Two distributions beside one another.
+/// Comparison of two distributions.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Compared {
-    /// Values of the measured, and of the grown trees.
+    /// Numbers of values of the measured, and of the grown trees.
     counts: [usize; 2],
     medians: [f64; 2],
     /// Greatest distance between the distributions.
     distance: f64,
-    /// Of the test of Kolmogorov and Smirnov.
+    /// Probability of the test of Kolmogorov and Smirnov.
     p: f64,
 }
 
@@ -88,7 +88,7 @@ impl Measured {
         let mut out = Vec::new();
         for (order, traits) in self.fitted.orders.iter().enumerate().take(orders) {
             for which in Trait::ALL.into_iter().filter(|t| t.is_of(order)) {
-                let mut values = traits.of(which).to_vec();
+                let mut values = traits.values(which).to_vec();
                 if values.is_empty() {
                     continue;
                 }
@@ -113,7 +113,7 @@ impl Measured {
     }
 }
 
-/// The median of sorted values between the values that it lies between nine times of ten (binomial ranks).
+/// Returns the median of sorted values, with the bounds of its interval at 90 % (binomial ranks).
 fn median_of(sorted: &[f64]) -> [f64; 3] {
     let n = sorted.len() as f64;
     let half = 0.5 * 1.645 * n.sqrt();
@@ -131,7 +131,7 @@ fn fit(args: &SpeciesFitArgs) -> Outcome {
         [("-o", Some(&args.output)), ("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
     let mut outputs = Outputs::new(&outputs, &args.inputs.iter().collect::<Vec<_>>())?;
     if files::extension(&args.output).is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
-        return Err(Failure::at(&args.output, "a species is written as TOML: name a file .toml"));
+        return Err(Failure::bad_file(&args.output, "a species is written as TOML: name a file .toml"));
     }
     if let Some(png) = &args.png {
         picture::check_name(png)?;
@@ -147,10 +147,10 @@ fn fit(args: &SpeciesFitArgs) -> Outcome {
     let is_kept_out = |k: usize| keeps && k % KEPT_OUT.1 == KEPT_OUT.1 - 1;
     let lot = |kept: bool| {
         let own = plants.iter().enumerate().filter(|(k, _)| is_kept_out(*k) == kept);
-        (own.clone().count(), Traits::of(own.map(|(_, p)| p)))
+        (own.clone().count(), Traits::measure(own.map(|(_, p)| p)))
     };
     let [(trees_fitted, fitted), (trees_kept_out, kept_out)] = [lot(false), lot(true)];
-    // What TOML does not hold as it is.
+    // Removes characters that TOML does not hold unescaped.
     let name: String = files::stem(&args.output).chars().filter(|c| !c.is_control()).collect();
     let species =
         fit_species(&name, &fitted, &SpeciesLimits::default()).map_err(|e| Failure::Bad(e.to_string()))?;
@@ -199,7 +199,7 @@ fn read(args: &SpeciesFitArgs, told: &mut Report, machine: &Machine) -> Outcome<
     for path in &args.inputs {
         machine.cancel.check()?;
         let (input, Kind::Structure(format)) = files::open(path)? else {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 path,
                 "is no structure of trees (a table of cylinders, MTG, OPF or SWC)",
             ));
@@ -217,7 +217,7 @@ fn named(path: &Path, warning: Warning) -> Warning {
     Warning { message: format!("{}: {}", path.display(), warning.message), ..warning }
 }
 
-/// The traits of trees of the spec, of seeds from 1 on.
+/// Returns the traits of trees of the spec, of seeds from 1 on.
 fn grown(spec: &TreeSpec, trees: u32, machine: &Machine) -> Outcome<Traits> {
     let bare = TreeSpec { bare: true, ..spec.clone() };
     let run = machine.run();
@@ -323,13 +323,13 @@ fn line(t: &TraitReport) -> String {
     )
 }
 
-/// The spec as people edit it: what is not said here is the default.
+/// Writes the spec as people edit it: omitted fields have their defaults.
 fn toml_of(spec: &TreeSpec) -> Outcome<String> {
     let burgeon::growth::Method::Lsystem { rules, most_modules } = &spec.method else {
         return Err(Failure::Bug("a fitted species has no rules".into()));
     };
     let quoted = |text: &str| {
-        // A string of JSON is one of TOML.
+        // A string of JSON is also one of TOML.
         serde_json::to_string(text).map_err(|e| Failure::Bug(format!("a name cannot be written: {e}")))
     };
     let text = format!(

@@ -5,15 +5,20 @@ use burgeon::render::Picture;
 
 use crate::lettering::{ADVANCE, put_dot, write_text};
 
-/// Pixels of a panel, and round its curves.
+/// Width and height of a panel, pixels.
 const PANEL: [i64; 2] = [230, 140];
+/// Margins around its curves, pixels.
 const ROOM: [i64; 4] = [14, 34, 14, 20];
-/// Pixels of a pixel of a letter.
+/// Side of a dot of a letter, pixels.
 const DOT: i64 = 2;
+/// Colour of words and axes.
 const DARK: [u8; 3] = [40, 40, 40];
+/// Colour of frames.
 const PALE: [u8; 3] = [200, 200, 200];
-/// Trees that were fitted, kept out, and grown; told apart by people who see red and green alike, too (Okabe and Ito 2008).
+/// Colours of trees that were fitted, kept out, and grown, distinguishable for people who confuse red and green, too
+/// (Okabe and Ito 2008).
 const LOTS: [[u8; 3]; 3] = [[0, 114, 178], [230, 159, 0], [213, 94, 0]];
+/// Names of the three lots of trees.
 const LOT_NAMES: [&str; 3] = ["fitted", "kept out", "grown"];
 
 struct Sheet(Picture);
@@ -27,7 +32,7 @@ impl Sheet {
         write_text(&mut self.0, corner, text, (DOT, colour));
     }
 
-    /// The share of sorted values below each place of a panel, as a line.
+    /// Draws the share of sorted values below each place of a panel, as a line.
     fn steps(&mut self, corner: [i64; 2], sorted: &[f64], [low, high]: [f64; 2], colour: [u8; 3]) {
         let (width, height) = (PANEL[0] - ROOM[0] - ROOM[2], PANEL[1] - ROOM[1] - ROOM[3]);
         let mut before = None;
@@ -46,7 +51,7 @@ impl Sheet {
     }
 }
 
-/// A number in few letters.
+/// Formats a number in few letters.
 fn short(value: f64) -> String {
     let digits = if value.abs() >= 100.0 {
         0
@@ -58,10 +63,10 @@ fn short(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// The share of values at either end that a panel leaves out: a single stray one would press all others into a line.
+/// Share of values at either end that a panel leaves out: a single stray one would press all others into a line.
 const BEYOND: f64 = 0.01;
 
-/// The distributions of all traits of trees that were fitted, kept out and grown, with p of grown against fitted.
+/// Draws the distributions of all traits of trees that were fitted, kept out and grown, with p of grown against fitted.
 pub(crate) fn picture_of(lots: [&Traits; 3], agreements: &[Agreement], orders: usize) -> Picture {
     let [width, height] = [PANEL[0] * orders.max(3) as i64, PANEL[1] * Trait::ALL.len() as i64 + ROOM[1]];
     let pixels = |n: i64| u32::try_from(n).unwrap_or(1);
@@ -86,7 +91,7 @@ fn panel(
     agreements: &[Agreement],
 ) {
     let values = lots.map(|lot| {
-        let mut own = lot.orders.get(order).map_or_else(Vec::new, |o| o.of(which).to_vec());
+        let mut own = lot.orders.get(order).map_or_else(Vec::new, |o| o.values(which).to_vec());
         own.sort_by(f64::total_cmp);
         own
     });

@@ -58,7 +58,7 @@ struct StageEntry {
     crop: Option<[[f64; 3]; 2]>,
 }
 
-/// What was done to a scan.
+/// Changes made to a scan.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct StageReport {
     file: String,
@@ -67,15 +67,15 @@ pub(crate) struct StageReport {
     cropped: usize,
     ground: usize,
     outliers: usize,
-    /// Of things that stand apart from the largest.
+    /// Points of things apart from the largest.
     others: usize,
-    /// Width, height and depth of what was kept.
+    /// Width, height and depth of the kept points.
     size_mm: [f64; 3],
     organs: Vec<OrganTold>,
 }
 
 impl StageReport {
-    /// One line for people.
+    /// Returns one line for people.
     pub(crate) fn line(&self) -> String {
         let organs: Vec<String> = self.organs.iter().map(|o| format!("{} {}", o.name, o.points)).collect();
         let [w, h, d] = self.size_mm;
@@ -106,20 +106,20 @@ pub(crate) struct Loaded {
     pub(crate) mesh: Option<TriMesh>,
     /// Unit and up axis of the scans.
     pub(crate) axes: ExportSpec,
-    /// What was taken off all scans.
+    /// Offset subtracted from all scans.
     pub(crate) origin: Origin,
-    /// Organs carry names that were found from day to day, not by hand.
+    /// Whether organs have names that were found from day to day, not by hand.
     pub(crate) is_named_alike: bool,
 }
 
-/// How scans are treated.
+/// Treatment of scans.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options {
     pub(crate) clean: bool,
     pub(crate) split: bool,
 }
 
-/// Points of a scan with their colours, or of a model, in metres, +Y up, and the model's faces.
+/// Reads points of a scan with their colours, or of a model, in metres, +Y up, and the model's faces.
 fn read_any(
     path: &Path,
     axes: &ExportSpec,
@@ -135,7 +135,7 @@ fn read_any(
         None => files::extension(path).and_then(CloudFormat::from_extension),
     };
     if path.is_dir() {
-        return Err(Failure::at(path, "is a folder; name a file in it"));
+        return Err(Failure::bad_file(path, "is a folder; name a file in it"));
     }
     let Some(format) = cloud.filter(|_| stdin.is_some() || !files::has_faces(path)) else {
         let (model, _, told) = match stdin {
@@ -147,7 +147,7 @@ fn read_any(
         tell(told);
         let mut mesh = TriMesh::default();
         for part in &model.parts {
-            // Only positions and faces: parts may differ in their other columns.
+            // Only positions and faces: the other columns of parts may differ.
             mesh.append(&TriMesh {
                 positions: part.mesh.positions.clone(),
                 triangles: part.mesh.triangles.clone(),
@@ -170,7 +170,7 @@ fn read_any(
     Ok((cloud, None))
 }
 
-/// A scan for comparison with what was loaded: its points, cleaned.
+/// Reads a scan for comparison with the loaded ones: its points, cleaned.
 pub(crate) fn read_points(
     path: &Path,
     loaded: &mut Loaded,
@@ -187,7 +187,7 @@ pub(crate) fn read_points(
     Ok(kept.into_iter().map(|i| points[i]).collect())
 }
 
-/// Reads and cleans one scan; tells what went.
+/// Reads and cleans one scan; reports what was removed.
 fn prepare(
     path: &Path,
     day: f64,
@@ -220,7 +220,7 @@ fn prepare(
     };
     told.size_mm = (box_of(points) * 1e3).to_array();
     let size = box_of(points).max_element();
-    // Between the smallest seedling and what anybody scans as a series.
+    // Between the smallest seedling and the largest thing that anybody scans as a series.
     if size > 20.0 || (size > 0.0 && size < 5e-4) {
         warnings.push(format!(
             "{}: is {size:.4} m in size in the unit that was taken; is it right? `unit = \"mm\"` in the stages file or \
@@ -275,7 +275,7 @@ fn prepare(
     Ok((kept, mesh, told))
 }
 
-/// The mirror image, beside the origin that the series has.
+/// Returns the mirror image, next to the origin of the series.
 fn mirrored(p: DVec3) -> DVec3 {
     DVec3::new(-p.x, p.y, p.z)
 }
@@ -284,22 +284,22 @@ fn mirrored_if(mirror: bool, p: DVec3) -> DVec3 {
     if mirror { mirrored(p) } else { p }
 }
 
-/// Width, height and depth.
+/// Returns width, height and depth.
 fn box_of(points: &[DVec3]) -> DVec3 {
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let [low, high] = points.iter().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
     (high - low).max(DVec3::ZERO)
 }
 
-/// Stages of a file.
+/// Loads the stages of a file.
 pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine) -> Outcome<Loaded> {
     let text = files::read_text(path)?;
     let file: StagesFile = toml::from_str(&text).map_err(|e| {
         let line = e.span().map_or(1, |s| text[..s.start.min(text.len())].lines().count().max(1));
-        Failure::at(path, format_args!("line {line}: {}; see `burgeon bloom fit --help`", e.message()))
+        Failure::bad_file(path, format_args!("line {line}: {}; see `burgeon bloom fit --help`", e.message()))
     })?;
     if file.stage.is_empty() {
-        return Err(Failure::at(path, "names no stage; add [[stage]] with file and day"));
+        return Err(Failure::bad_file(path, "names no stage; add [[stage]] with file and day"));
     }
     let mut out = Loaded {
         name: file.name.clone().unwrap_or_else(|| files::stem(path)),
@@ -313,7 +313,10 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
     };
     for entry in &file.stage {
         if !entry.day.is_finite() {
-            return Err(Failure::at(path, format_args!("the day of {} is no number", entry.file.display())));
+            return Err(Failure::bad_file(
+                path,
+                format_args!("the day of {} is no number", entry.file.display()),
+            ));
         }
         add_entry(path, &file, entry, axes, seed, machine, &mut out)?;
     }
@@ -329,8 +332,8 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
     Ok(out)
 }
 
-/// Warns of scans that are mirrored, lie down, or have another scale than the others. Of single organs nothing says how they
-/// stand.
+/// Warns of scans that are mirrored, lie down, or have another scale than the others. Single organs give no
+/// orientation.
 fn odd(out: &mut Loaded, machine: &Machine) -> Outcome {
     if out.mesh.is_some() || out.stages.iter().any(|s| s.organs.len() < 2) {
         return Ok(());
@@ -437,7 +440,7 @@ fn add_entry(
     Ok(())
 }
 
-/// What is made of a whole model, each vertex one point, has its triangles.
+/// Gives the only organ of a whole model, each vertex one point, the model's triangles.
 fn add_faces(organs: &mut [ScanOrgan], mesh: Option<&TriMesh>) {
     if let ([one], Some(mesh)) = (organs, mesh)
         && one.points.len() == mesh.positions.len()
@@ -446,13 +449,13 @@ fn add_faces(organs: &mut [ScanOrgan], mesh: Option<&TriMesh>) {
     }
 }
 
-/// A region of an organ joins the other regions of the same day.
+/// Adds a region of an organ to the other regions of the same day.
 fn add_organ(stage: &mut Stage, mut organ: ScanOrgan, region: Option<usize>) {
     let Some(region) = region else {
         stage.organs.push(organ);
         return;
     };
-    // Files of regions say the place along the organ themselves: whole numbers, brought to 0..1 at the end.
+    // Files of regions give the place along the organ themselves: whole numbers, scaled to 0..1 at the end.
     #[expect(clippy::cast_precision_loss, reason = "a handful of regions")]
     let place = region.clamp(1, 20) as f64;
     organ.way.iter_mut().for_each(|w| *w = (place - 1.0 + w.clamp(0.001, 0.999)) / 20.0);
@@ -475,7 +478,7 @@ fn add_organ(stage: &mut Stage, mut organ: ScanOrgan, region: Option<usize>) {
     }
 }
 
-/// Brings organs under the same names, stretches ways of regions, warns of unlike sizes.
+/// Gives organs the same names, stretches the lengths of regions, warns of unlike sizes.
 fn alike(out: &mut Loaded, split: bool) {
     let size = |s: &Stage| {
         let all = || s.organs.iter().flat_map(|o| &o.points);
@@ -487,7 +490,7 @@ fn alike(out: &mut Loaded, split: bool) {
         for organ in &mut stage.organs {
             let longest = organ.way.iter().copied().fold(0.0, f64::max);
             if longest > 0.0 && longest < 0.999 {
-                // Regions were marked in twentieths: as many as there are become the whole way.
+                // Regions were marked in twentieths: their number becomes the whole length.
                 let whole = (longest * 20.0).ceil() / 20.0;
                 organ.way.iter_mut().for_each(|w| *w /= whole);
             }
@@ -522,7 +525,7 @@ fn alike(out: &mut Loaded, split: bool) {
     }
 }
 
-/// First and last shape, each a file; or one shape.
+/// Loads the first and last shape, each a file; or one shape.
 pub(crate) fn load_files(
     shapes: &[(&Path, f64)],
     options: Options,
@@ -565,7 +568,7 @@ pub(crate) fn load_files(
         let organs = organs.into_iter().map(|o| o.coloured(&colors)).collect();
         out.stages.push(Stage { day, organs });
     }
-    // A scan that falls into stem and leaves cannot meet one that is a single organ.
+    // A scan that is split into stem and leaves cannot be matched with one that is a single organ.
     let counts: Vec<usize> = out.stages.iter().map(|s| s.organs.len()).collect();
     if split && counts.contains(&1) && counts.iter().any(|&c| c > 1) {
         out.warnings

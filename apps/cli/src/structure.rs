@@ -1,4 +1,4 @@
-//! Plants that are read from files of structure: MTG, OPF, QSM and SWC.
+//! Plants read from files of structure: MTG, OPF, QSM and SWC.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(crate) fn read(
     told: &mut Report,
 ) -> Outcome<ReadStructure> {
     let read = read_structure(input, format, &files::stem(path), spec, told);
-    let read = read.map_err(|e| Failure::at(path, e))?;
+    let read = read.map_err(|e| Failure::bad_file(path, e))?;
     // A table of cylinders is in metres, as its programs write it.
     if !read.tally.unit_said && spec.metres.is_none() && format != StructureFormat::Qsm {
         let height = read.plants.iter().map(height_m).fold(0.0, f64::max);
@@ -43,7 +43,7 @@ fn height_m(plant: &Plant) -> f64 {
     plant.extent().map_or(0.0, |(low, high)| high.y - low.y)
 }
 
-/// The one plant of a file, or the one that was asked for by its number from 1.
+/// Returns the only plant of a file, or the one of the given number from 1.
 pub(crate) fn choose(
     path: &Path,
     read: ReadStructure,
@@ -57,22 +57,23 @@ pub(crate) fn choose(
                 "holds {} that stand apart; --plant 1 to --plant {count} takes one of them",
                 say::counted(count as u64, "plant", "plants")
             );
-            return Err(Failure::at(path, line));
+            return Err(Failure::bad_file(path, line));
         }
         Some(asked) => {
             let number = asked.parse::<usize>().ok().filter(|n| (1..=count).contains(n));
-            let wrong =
-                || Failure::at(path, format_args!("has no plant {asked}: give a number from 1 to {count}"));
+            let wrong = || {
+                Failure::bad_file(path, format_args!("has no plant {asked}: give a number from 1 to {count}"))
+            };
             number.ok_or_else(wrong)? - 1
         }
     };
     let plant = read.plants.into_iter().nth(row).ok_or_else(|| Failure::Bug("a plant is gone".into()))?;
-    // What others have is of no account.
+    // The tally covers all plants, so it does not apply to one of several.
     let tally = if count > 1 { StructureTally::default() } else { read.tally };
     Ok((plant, tally))
 }
 
-/// Fails on a plant that is higher than any.
+/// Fails on a plant that is higher than any real one.
 pub(crate) fn check_height(path: &Path, plant: &Plant) -> Outcome {
     let height = height_m(plant);
     if height <= PLAUSIBLE.size_most_m {
@@ -81,10 +82,10 @@ pub(crate) fn check_height(path: &Path, plant: &Plant) -> Outcome {
     let line = format_args!(
         "the plant would be {height:.0} m high, and none is: --in-unit cm, mm or um says the unit of the file"
     );
-    Err(Failure::at(path, line))
+    Err(Failure::bad_file(path, line))
 }
 
-/// Makes a plant that was read, and refuses what no plant can be.
+/// Makes a plant that was read, and refuses an impossible one.
 pub(crate) fn make(
     path: &Path,
     (plant, tally): (Plant, &StructureTally),
@@ -95,7 +96,7 @@ pub(crate) fn make(
     check_height(path, &plant)?;
     let made = make_from_structure(plant, tally, options, seed, &machine.run()).map_err(|e| match e {
         StructureModelError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
-        other => Failure::at(path, other),
+        other => Failure::bad_file(path, other),
     });
     let mut made = made?;
     let item = &mut made.made.item;
@@ -105,7 +106,7 @@ pub(crate) fn make(
     Ok(made)
 }
 
-/// A warning with the option that helps behind it.
+/// Returns a warning followed by the option that helps.
 fn named(said: String, code: &str) -> String {
     let option = match code {
         "size-small" | "size-large" | "leaf-long" => "--in-unit",
@@ -115,13 +116,13 @@ fn named(said: String, code: &str) -> String {
     format!("{said} ({option})")
 }
 
-/// What is not plausible in a plant as it stands in its file.
+/// Returns implausible properties of a plant as it stands in its file.
 pub(crate) fn doubts(plant: &Plant, tally: &StructureTally) -> Vec<String> {
     let told = check_read(plant, tally).warnings;
     told.iter().map(|w| named(w.to_string(), w.code)).collect()
 }
 
-/// What was taken off the coordinates of a plant, in metres, in words.
+/// Describes the offset subtracted from the coordinates of a plant, in metres.
 pub(crate) fn moved(foot: DVec3) -> Option<String> {
     let [x, y, z] = [foot.x, foot.y, foot.z].map(|x| (x * 1e4).round() / 1e4);
     (foot != DVec3::ZERO).then(|| {

@@ -1,4 +1,4 @@
-//! What a process left that was killed: sets of files that were complete are put in place, all else is removed.
+//! Clean-up after a process that was killed: complete sets of files are put in place, all other files are removed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
@@ -13,12 +13,12 @@ use crate::disk;
 use crate::inputs::{self, FileId};
 use crate::lease::{Holder, Lease, Role};
 
-/// Where no lock tells whether a process is gone: what nobody wrote to for so long was left by one that was killed.
+/// Age at which a file without a lock counts as left by a killed process.
 const STALE: Duration = Duration::from_secs(24 * 60 * 60);
 /// Longest list of files that is read, bytes: that of 100,000 files.
 const MAX_LIST: u64 = 64 << 20;
 
-/// The files of a set that is complete.
+/// Files of a complete set.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Set {
@@ -29,15 +29,15 @@ pub(crate) struct Set {
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Entry {
-    /// None where it is that of the list, which may be moved.
+    /// `None` where it is that of the list, which may be moved.
     pub(crate) folder: Option<OsString>,
     pub(crate) draft: OsString,
     pub(crate) place: OsString,
-    /// What had that name: if it is another now, somebody else wrote it since, and it stays.
+    /// Previous file of that name: if it is another now, somebody else has written it since, and it stays.
     pub(crate) before: Option<Stamp>,
 }
 
-/// Tells a file from one that was written later.
+/// Mark that distinguishes a file from one that was written later.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 pub(crate) struct Stamp {
     bytes: u64,
@@ -47,7 +47,7 @@ pub(crate) struct Stamp {
 }
 
 impl Stamp {
-    pub(crate) fn of(path: &Path) -> Option<Self> {
+    pub(crate) fn read(path: &Path) -> Option<Self> {
         let metadata = fs::symlink_metadata(path).ok()?;
         #[cfg(unix)]
         let number = std::os::unix::fs::MetadataExt::ino(&metadata);
@@ -58,33 +58,36 @@ impl Stamp {
 }
 
 impl Entry {
-    /// Where its draft and its place are; none if the list is not one of ours: no list can name a file elsewhere.
+    /// Returns the paths of its draft and of its place; `None` if the list is not one of ours: no list can name a file
+    /// elsewhere.
     fn paths(&self, list: &Path) -> Option<(PathBuf, PathBuf)> {
         let folder = match &self.folder {
             Some(folder) => PathBuf::from(folder),
             None => list.parent()?.to_path_buf(),
         };
-        let draft = self.draft.to_str().and_then(Role::of).is_some_and(|(_, role)| role == Role::Part);
+        let draft =
+            self.draft.to_str().and_then(Role::from_file_name).is_some_and(|(_, role)| role == Role::Part);
         let mut parts = Path::new(&self.place).components();
         let place = matches!((parts.next(), parts.next()), (Some(Component::Normal(name)), None) if name == self.place);
         (draft && place).then(|| (folder.join(&self.draft), folder.join(&self.place)))
     }
 }
 
-/// What is left in a folder by those that are gone. Errors do not matter: somebody else may sweep at the same time.
+/// Finishes or removes the remains of ended processes in a folder. Errors do not matter: somebody else may sweep at the
+/// same time.
 pub(crate) fn sweep(own: &Lease) {
     let mut runs: BTreeMap<String, Vec<(PathBuf, Role)>> = BTreeMap::new();
     for entry in fs::read_dir(&own.folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
-        let Some((run, role)) = name.to_str().and_then(Role::of) else { continue };
-        // Of the entry itself, not of what a link points to.
+        let Some((run, role)) = name.to_str().and_then(Role::from_file_name) else { continue };
+        // Properties of the entry itself, not of the target of a link.
         if run != own.run && entry.metadata().is_ok_and(|m| m.is_file() && own.owns(&m)) {
             runs.entry(run.to_owned()).or_default().push((entry.path(), role));
         }
     }
     let now = SystemTime::now();
     for (run, files) in &runs {
-        match Holder::of(&own.folder, run) {
+        match Holder::find(&own.folder, run) {
             Holder::Alive => {}
             Holder::Gone(lock) => {
                 clear(own, files, |_| true);
@@ -100,12 +103,12 @@ fn is_stale(path: &Path, now: SystemTime) -> bool {
     modified.is_ok_and(|t| now.duration_since(t).is_ok_and(|age| age > STALE))
 }
 
-/// Finishes the sets of a run and removes its other files, the lock last. Where a set cannot be finished now, all stays for
-/// the next command.
+/// Finishes the sets of a run and removes its other files, the lock last. If a set cannot be finished now, all files
+/// stay for the next command.
 fn clear(own: &Lease, files: &[(PathBuf, Role)], is_left: impl Fn(&Path) -> bool) {
     let of = |wanted: Role| files.iter().filter(move |(_, role)| *role == wanted).map(|(path, _)| path);
     if !files.iter().all(|(path, _)| is_left(path)) {
-        // Of a run without a lock the old drafts alone go: they belong to no set.
+        // For a run without a lock, only the old drafts are removed: they belong to no set.
         if of(Role::Set).chain(of(Role::See)).next().is_none() {
             of(Role::Part).filter(|path| is_left(path)).for_each(|path| drop(disk::remove(path)));
         }
@@ -123,11 +126,11 @@ fn clear(own: &Lease, files: &[(PathBuf, Role)], is_left: impl Fn(&Path) -> bool
     }
 }
 
-/// The list that a file of a folder points to, as long as it is there.
+/// Returns the list that a file of a folder points to, if it still exists.
 fn elsewhere(pointer: &Path) -> Option<PathBuf> {
     let list = PathBuf::from(serde_json::from_slice::<OsString>(&read(pointer).ok()?).ok()?);
     let name = list.file_name()?.to_str()?;
-    (list.is_absolute() && Role::of(name)?.1 == Role::Set && list.is_file()).then_some(list)
+    (list.is_absolute() && Role::from_file_name(name)?.1 == Role::Set && list.is_file()).then_some(list)
 }
 
 fn read(path: &Path) -> io::Result<Vec<u8>> {
@@ -136,7 +139,8 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Puts the rest of a set in place; false where that must wait, as one of its places is an input of this command.
+/// Puts the rest of a set in place; returns false where that must wait, as one of its places is an input of this
+/// command.
 fn finish(own: &Lease, list: &Path) -> io::Result<bool> {
     let Ok(metadata) = fs::symlink_metadata(list) else { return Ok(true) };
     if !metadata.is_file() || !own.owns(&metadata) {
@@ -145,7 +149,7 @@ fn finish(own: &Lease, list: &Path) -> io::Result<bool> {
     let set: Set = serde_json::from_slice(&read(list)?)?;
     let all: Option<Vec<_>> = set.files.iter().map(|e| Some((e.paths(list)?, &e.before))).collect();
     let all = all.ok_or(io::ErrorKind::InvalidData)?;
-    // What is no more a draft is in place.
+    // An entry without a draft is in place already.
     let rest: Vec<_> = all
         .iter()
         .filter_map(|((draft, place), before)| {
@@ -155,13 +159,13 @@ fn finish(own: &Lease, list: &Path) -> io::Result<bool> {
     let may = |place: &Path, draft: &fs::Metadata| {
         draft.is_file()
             && own.owns(draft)
-            && FileId::of(place).is_none_or(|id| inputs::read_as(&id).is_none())
+            && FileId::from_path(place).is_none_or(|id| inputs::read_as(&id).is_none())
     };
     if !rest.iter().all(|(_, place, _, draft)| may(place, draft)) {
         return Ok(false);
     }
     for (draft, place, before, _) in &rest {
-        let now = Stamp::of(place);
+        let now = Stamp::read(place);
         let is_free = now.is_none() || now == ***before;
         if is_free { disk::rename(draft, place)? } else { disk::remove(draft)? }
     }

@@ -13,29 +13,29 @@ use crate::files;
 use crate::machine::Machine;
 use crate::say;
 
-/// The laws of a growth table.
+/// Laws of a growth table.
 pub(crate) struct TableFit {
     pub(crate) law: GrowthLaw,
     pub(crate) warnings: Vec<String>,
-    /// Whether groups grow alike, where there are groups.
+    /// Whether groups grow alike, if there are groups.
     pub(crate) groups: Option<GroupReport>,
     pub(crate) read_ms: f64,
     pub(crate) fit_ms: f64,
 }
 
-/// Whether groups grow alike, as the report tells it.
+/// Whether groups grow alike, in the report.
 #[derive(Debug, Serialize)]
 pub(crate) struct GroupReport {
     by: String,
     groups: Vec<String>,
-    /// Of one curve for all, and of a curve for each, square metres.
+    /// Sums of squares of one curve for all, and of a curve for each, square metres.
     squares_m2: [f64; 2],
     freedom: [u32; 2],
     f: f64,
-    /// If all values were independent.
+    /// Probability if all values were independent.
     p_f: f64,
     permutations: Option<u32>,
-    /// By plants that change their groups; null for too few.
+    /// Probability by permutations of the groups of plants; null for too few.
     p_permuted: Option<f64>,
 }
 
@@ -114,7 +114,7 @@ fn read(args: &FitArgs) -> Outcome<ReadGrowth> {
     };
     let is_workbook = files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
     args.given.only_if(is_workbook, &["sheet"], "workbooks (.xlsx)", "the table is none")?;
-    let failed = |e| Failure::at(path, e);
+    let failed = |e| Failure::bad_file(path, e);
     let mut read = if is_workbook {
         let sheet = read_xlsx(input, table.sheet.as_deref()).map_err(failed)?;
         let mut read = read_growth(sheet.text.as_bytes(), &spec).map_err(failed)?;
@@ -142,18 +142,18 @@ fn read(args: &FitArgs) -> Outcome<ReadGrowth> {
     Ok(read)
 }
 
-/// What a plant, or an organ of it, is called.
+/// Returns the name of a plant, or of an organ of it.
 fn name_of(row: &GrowthEntry) -> String {
     match (row.organ.is_empty(), row.plant.is_empty()) {
         (true, true) => "plant".to_owned(),
         (false, true) => row.organ.clone(),
-        // The number last: what is before it is the kind.
+        // The number comes last: the text before it is the kind.
         (true, false) => format!("plant {}", row.plant),
         (false, false) => format!("plant {}: {}", row.plant, row.organ),
     }
 }
 
-/// Values by name, in the order of the table.
+/// Collects values by name, in the order of the table.
 fn gathered(rows: &[GrowthEntry], name: impl Fn(&GrowthEntry) -> String) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut series: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
@@ -167,7 +167,7 @@ fn gathered(rows: &[GrowthEntry], name: impl Fn(&GrowthEntry) -> String) -> Vec<
     series
 }
 
-/// A law for each organ of each plant.
+/// Fits a law for each organ of each plant.
 fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
     let mut warnings = Vec::new();
     let mut able = Vec::new();
@@ -179,7 +179,7 @@ fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outco
                  of groups of plants (--by COLUMN)",
                 twice[0].0
             );
-            return Err(Failure::at(&args.input, line));
+            return Err(Failure::bad_file(&args.input, line));
         }
         if rows.len() < 3 {
             let sizes = say::counted(rows.len() as u64, "size", "sizes");
@@ -194,7 +194,7 @@ fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outco
     Ok(TableFit { law, warnings, groups: None, read_ms: 0.0, fit_ms })
 }
 
-/// A law for each group of plants.
+/// Fits a law for each group of plants.
 fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
     let mut warnings = Vec::new();
     let mut names: Vec<&str> = Vec::new();
@@ -205,7 +205,7 @@ fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine
         if names.len() > MOST_GROUPS {
             let line =
                 format!("the column {by} tells more than {MOST_GROUPS} groups; name another with --by");
-            return Err(Failure::at(&args.input, line));
+            return Err(Failure::bad_file(&args.input, line));
         }
     }
     let without = rows.iter().filter(|r| r.group.is_empty()).count();
@@ -230,7 +230,10 @@ fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine
         groups.push(PlantGroup { name: name.to_owned(), plants: plants.collect() });
     }
     if groups.is_empty() {
-        return Err(Failure::at(&args.input, format!("no group by {by} was measured on 3 days or more")));
+        return Err(Failure::bad_file(
+            &args.input,
+            format!("no group by {by} was measured on 3 days or more"),
+        ));
     }
     let seed = Seed::new(args.seed);
     let (found, fit_ms) =
@@ -243,5 +246,5 @@ fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine
     Ok(TableFit { law: found.law, warnings, groups: report, read_ms: 0.0, fit_ms })
 }
 
-/// Groups that are compared at most: a column of more tells something else.
+/// Most groups that are compared: a column with more values has another meaning.
 const MOST_GROUPS: usize = 100;

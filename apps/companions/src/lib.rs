@@ -1,19 +1,19 @@
 //! Files that a file names: where they may lie, and how much of them is read.
 //!
-//! A model names its materials and buffers, a spec its obstacles, a file of stages its scans. Whoever made that file chose the
-//! names, and it may have come from anybody. So a name is looked for below the folder of the file that names it, also after
-//! links, and what is no regular file is never opened. One who trusts the file says so ([`Trust::paths`]): then a path may
-//! lead anywhere, and the limits stay.
+//! A model names its materials and buffers, a spec its obstacles, a file of stages its scans. The maker of that file
+//! chose the names, and it may have come from anybody. So a name is looked for below the folder of the file that names
+//! it, also after links, and only a regular file is ever opened. A user who trusts the file can allow other paths
+//! ([`Trust::paths`]): then a path may lead anywhere, and the limits stay.
 
 use std::fmt;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read as _};
 use std::path::{Component, Path, PathBuf};
 
-/// The most bytes that are read of a file that another one names.
+/// Most bytes that are read of a file that another one names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// What a model names: a buffer, a file of materials, a texture.
+    /// A file that a model names: a buffer, a file of materials, a texture.
     pub side_file: u64,
     /// A picture that a file of materials names.
     pub picture: u64,
@@ -26,53 +26,53 @@ pub struct Limits {
 /// The limits of the command and of Python.
 pub const LIMITS: Limits = Limits { side_file: 256 << 20, picture: 64 << 20, model: 1 << 30, text: 16 << 20 };
 
-/// Where the files may lie that a file names.
+/// Places where the files that a file names may lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trust {
-    /// Anywhere, also by links; otherwise below the folder of the file that names them.
+    /// Whether they may lie anywhere, also by links; otherwise below the folder of the file that names them.
     pub paths: bool,
-    /// How paths are trusted, as messages say it: an option or an argument.
+    /// The way to trust paths, for messages: an option or an argument.
     pub allow: &'static str,
 }
 
-/// A file that is named by another one, and was not read.
+/// A file that another one names, and that was not read.
 #[derive(Debug, thiserror::Error)]
 #[error("{} names {:?}, {fault}", naming.display(), base::quoted(name))]
 pub struct NamedFileError {
     /// The file that names it.
     pub naming: PathBuf,
-    /// The path as it is written.
+    /// The path as written.
     pub name: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: NamedFault,
 }
 
-/// Why a file that is named is not read.
+/// Reason why a named file is not read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NamedFault {
-    /// There is none.
+    /// It does not exist.
     #[error("which is not there; check the spelling, and copy it along")]
     Missing,
-    /// It lies, or may lie, outside of the folder of the file that names it. Whether it exists is not said.
+    /// It lies, or may lie, outside the folder of the file that names it. Whether it exists is not revealed.
     #[error("which is not below its folder; copy it there, or allow it with {allow}")]
     Outside {
-        /// How it is allowed.
+        /// The way to allow it.
         allow: &'static str,
     },
     /// A link leads outside of the folder of the file that names it.
     #[error("a link that leads out of its folder; copy the file there, or allow it with {allow}")]
     Link {
-        /// How it is allowed.
+        /// The way to allow it.
         allow: &'static str,
     },
-    /// It is no regular file.
+    /// It is not a regular file.
     #[error("which is {0}, not a file; put a file there")]
     NotAFile(NotAFile),
-    /// There is more of it than is read.
+    /// It is larger than the limit.
     #[error("which is larger than {} MiB; is it the right file?", limit >> 20)]
     TooLarge {
-        /// Bytes.
+        /// The limit in bytes.
         limit: u64,
     },
     /// The system refuses.
@@ -80,7 +80,7 @@ pub enum NamedFault {
     Io(io::Error),
 }
 
-/// What there is instead of a regular file.
+/// Kind of an object other than a regular file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAFile {
     /// A folder.
@@ -108,7 +108,7 @@ impl fmt::Display for NotAFile {
 }
 
 impl NotAFile {
-    /// What it is, if it is no regular file.
+    /// Returns the kind of the object, if it is not a regular file.
     fn new(metadata: &Metadata) -> Option<Self> {
         let kind = metadata.file_type();
         if kind.is_file() {
@@ -134,14 +134,14 @@ impl NotAFile {
 /// A name in a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Named<'a> {
-    /// The file that names it; it need not be read from there.
+    /// The file that names it; it need not be read.
     pub naming: &'a Path,
-    /// The path as it is written, with separators of Windows or others.
+    /// The path as written, with separators of Windows or others.
     pub name: &'a str,
 }
 
 impl Named<'_> {
-    /// The path that is meant: from the folder of the file that names it. Nothing is looked up.
+    /// Returns the path that is meant: from the folder of the file that names it. The disk is not accessed.
     pub fn path(&self) -> PathBuf {
         self.naming.parent().unwrap_or(Path::new("")).join(self.name.replace('\\', "/"))
     }
@@ -150,9 +150,9 @@ impl Named<'_> {
         self.naming.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
-    /// The path without links of a regular file that may be read.
+    /// Returns the path without links of a regular file that may be read.
     ///
-    /// Nothing is opened: neither is a pipe waited for nor a device touched. Not guaranteed: that the same file is there
+    /// Nothing is opened: no pipe is waited for and no device touched. Not guaranteed: that the same file is there
     /// later.
     ///
     /// # Errors
@@ -161,9 +161,9 @@ impl Named<'_> {
         self.look(trust).map(|(path, _)| path).map_err(|fault| self.error(fault))
     }
 
-    /// The file and its path without links, opened to be read; at most `limit` bytes by what the disk says.
+    /// Opens the file and returns it with its path without links; at most `limit` bytes according to the disk.
     ///
-    /// Guaranteed: what was opened is the regular file that was looked at.
+    /// Guaranteed: the opened file is the regular file that was checked.
     ///
     /// # Errors
     /// [`NamedFileError`].
@@ -171,7 +171,7 @@ impl Named<'_> {
         self.opened(trust, limit).map_err(|fault| self.error(fault))
     }
 
-    /// What is in `file`, which [`Self::open`] opened: at most `limit` bytes, whatever the disk said.
+    /// Reads `file`, which [`Self::open`] opened: at most `limit` bytes, whatever the disk reported.
     ///
     /// # Errors
     /// [`NamedFileError`].
@@ -209,8 +209,8 @@ impl Named<'_> {
         let allow = trust.allow;
         let path = self.path();
         let folder = if trust.paths { None } else { Some(fs::canonicalize(self.folder()).map_err(missing)?) };
-        // By its letters first: whether there is such a file elsewhere is nobody's business, and a path on the network is not
-        // asked for.
+        // Its letters are checked first: whether such a file exists elsewhere is not revealed, and a path on the
+        // network is not accessed.
         if let Some(folder) = &folder
             && !self.stays_inside(folder)
         {
@@ -227,7 +227,7 @@ impl Named<'_> {
         }
     }
 
-    /// The letters of the path lead below the folder; `folder` is the same without links.
+    /// Whether the letters of the path lead below the folder; `folder` is the same without links.
     fn stays_inside(&self, folder: &Path) -> bool {
         let name = self.name.replace('\\', "/");
         let name = Path::new(&name);
@@ -254,10 +254,10 @@ impl Named<'_> {
     }
 }
 
-/// What a path that leads nowhere gives.
+/// Returns the fault of a path that leads nowhere.
 fn missing(error: io::Error) -> NamedFault {
     match error.kind() {
-        // A name with a NUL is the name of no file, and one that is too long neither.
+        // No file has a name with a NUL, or one that is too long.
         io::ErrorKind::NotFound
         | io::ErrorKind::NotADirectory
         | io::ErrorKind::InvalidInput
@@ -272,7 +272,7 @@ fn is_same(a: &Metadata, b: &Metadata) -> bool {
     (a.dev(), a.ino()) == (b.dev(), b.ino())
 }
 
-/// Where the system does not number files, another one is told by its size and time.
+/// Where the system does not number files, size and time identify one.
 #[cfg(not(unix))]
 fn is_same(a: &Metadata, b: &Metadata) -> bool {
     (a.len(), a.modified().ok()) == (b.len(), b.modified().ok())

@@ -20,4 +20,12 @@ export type { PartArrays, Tables } from './protocol.js';
 export { FLOWERS, PARTS, TREES } from './spec.js';
 export type { FlowerSpec, LeafSpec, SketchSpec, SkinSpec, TreeSpec } from './spec.js';
 export type { Wind } from './wind.js';
-export type { ItemReport, LevelView, MaterialView, PartView, PlantView, TextureView } from './wire.js';
+export type {
+  EngineReport,
+  ItemReport,
+  LevelView,
+  MaterialView,
+  PartView,
+  PlantView,
+  TextureView,
+} from './wire.js';

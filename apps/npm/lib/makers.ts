@@ -24,8 +24,10 @@ export interface Common {
   readonly seed?: number | bigint;
   /** Columns that say how wind moves each vertex. Default true. */
   readonly wind?: boolean;
-  /** Coarser copies to make as well, 0 to 6; `object3D` is a `THREE.LOD` then. Default 0. */
+  /** Coarser copies to make as well, 0 to 6; `object3D` is a `THREE.LOD` then. Default 0, or what `engine` wants. */
   readonly lods?: number;
+  /** The program that a file `glb` is for: `three`, `blender`, `unity`, `unreal` or `godot` (docs/engines). */
+  readonly engine?: string;
   /** How many times the usual limits may be exceeded, 1 to 4. Default 1. */
   readonly budget?: number;
   /** Files to write as well. */
@@ -94,7 +96,7 @@ export interface Makers {
 
 const SKIN = ['detail', 'sides', 'textures'] as const;
 
-const COMMON = ['seed', 'wind', 'lods', 'budget', 'files', 'measures', 'signal', 'fields'] as const;
+const COMMON = ['seed', 'wind', 'lods', 'engine', 'budget', 'files', 'measures', 'signal', 'fields'] as const;
 
 /** `more`: the options that not all makers have. */
 function common(options: Common & SkinFields & { readonly fields?: object }, more: readonly string[]): Asked {
@@ -117,7 +119,8 @@ function common(options: Common & SkinFields & { readonly fields?: object }, mor
       texture_size:
         options.texture_size === undefined ? null : whole('texture_size', options.texture_size, 4096),
     },
-    lods: whole('lods', options.lods ?? 0, 6),
+    lods: options.lods === undefined ? null : whole('lods', options.lods, 6),
+    engine: options.engine ?? null,
     ...(options.budget === undefined ? {} : { budget: options.budget }),
     files: [...(options.files ?? [])],
   };

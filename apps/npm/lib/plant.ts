@@ -2,7 +2,15 @@
 import { wrong } from './errors.js';
 import { Looks, type ObjectOptions, type Place, type ThreeModule } from './object.js';
 import type { Answer, PartArrays, Tables } from './protocol.js';
-import type { CheckReport, ItemReport, Json, MaterialView, PlantView, TextureView } from './wire.js';
+import type {
+  CheckReport,
+  EngineReport,
+  ItemReport,
+  Json,
+  MaterialView,
+  PlantView,
+  TextureView,
+} from './wire.js';
 
 /** A mesh with its name and material. */
 export interface PlantMesh extends PartArrays {
@@ -76,7 +84,12 @@ export class Plant {
     return this.answer.tables;
   }
 
-  /** What was asked for as `files`, such as `glb`. */
+  /** The program that the files are for, and what was set for it, as options of the command. */
+  get engine(): EngineReport | null {
+    return this.answer.view.for;
+  }
+
+  /** What was asked for as `files`, such as `glb`; for a program also `lod1.glb` and so on. */
   get files(): Readonly<Record<string, Uint8Array>> {
     return this.answer.files;
   }

@@ -101,11 +101,11 @@ export const PARTS = [
   'stone',
 ] as const;
 
-/** Fruits with a parachute each, all round the head: a dandelion's clock. */
+/** Fruits with a parachute each, all around the head: a dandelion's clock. */
 export type Achenes = {
   /** Linear colour of the fruits. */
   color?: [number, number, number];
-  /** How many, 0 to 400, default none. */
+  /** Number of fruits, 0 to 400, default none. */
   count?: number;
   /** Radius of the head that bears them, metres, default 0.004. */
   head_m?: number;
@@ -113,9 +113,9 @@ export type Achenes = {
   length_m?: number;
 };
 
-/** How the petals of a ring lie in the bud. */
+/** Arrangement of the petals of a ring in the bud. */
 export type Aestivation =
-  | /** Each with one edge over and one under its neighbours. */
+  | /** Each has one edge over and one under its neighbours. */
   "contorted"
   | /** One within the other along a spiral, the outermost first: of five, two lie outside and two inside (quincuncial). */
   "imbricate"
@@ -124,46 +124,46 @@ export type Aestivation =
   | /** Grown together to a tube or funnel. */
   "fused";
 
-/** How buds or leaves stand around their axis. */
+/** Arrangement of buds or leaves around their axis. */
 export type Arrangement =
-  | /** One a node, turned by the divergence from the one before. */
+  | /** One per node, turned by the divergence from the one before. */
   {
-    /** Degrees; 137.5 in most plants. */
+    /** Divergence, degrees; 137.5 in most plants. */
     divergence_deg: number;
     kind: "spiral";
   }
-  | /** One a node, in two rows. */
+  | /** One per node, in two rows. */
   {
     kind: "distichous";
   }
-  | /** Two a node, all in one plane. */
+  | /** Two per node, all in one plane. */
   {
     kind: "opposite";
   }
-  | /** Two a node, each pair across the one before. */
+  | /** Two per node, each pair at right angles to the one before. */
   {
     kind: "decussate";
   }
-  | /** Several a node, 2 to 12. */
+  | /** Several per node, 2 to 12. */
   {
-    /** How many. */
+    /** Number of members of a whorl. */
     count: number;
     kind: "whorled";
   };
 
-/** One control ball moved and rescaled: the place of a mark and the thickness of the veins there. */
+/** One control ball moved and rescaled: the position of a mark and the thickness of the veins there. */
 export type BallMove = {
-  /** How far it is moved: to the right as one looks at the upper side with the tip up, towards the tip, and off the upper side; metres, -10 to 10. */
+  /** Offset to the right as seen on the upper side with the tip up, towards the tip, and off the upper side; metres, -10 to 10. */
   by_m?: [number, number, number];
-  /** Mark of the row from the right margin, 1 to 7, of which 4 is on the midrib; of chief veins the mark from the base. */
+  /** Mark of the row from the right margin, 1 to 7, where 4 is on the midrib; for chief veins the mark from the base. */
   mark?: number;
-  /** Row of marks from the tip down, from 1, or 0 for the tip; of chief veins the vein from the right margin, from 1. */
+  /** Row of marks from the tip down, from 1, or 0 for the tip; for chief veins the vein from the right margin, from 1. */
   row?: number;
-  /** The veins there are so many times as thick, 0.05 to 20, default 1. */
+  /** Factor on the thickness of the veins there, 0.05 to 20, default 1. */
   thickness?: number;
 };
 
-/** What the bark is like. */
+/** Kind of bark. */
 export type Bark =
   | /** Ridges and furrows along the trunk: oak, poplar, willow. */
   "furrowed"
@@ -182,7 +182,7 @@ export type Bark =
   | /** Green ribs with rows of spines on them: columnar cacti. */
   "ribbed";
 
-/** The shape of a leaf blade, drawn by formula. */
+/** The shape of a leaf blade, defined by a formula. */
 export type BladeForm =
   | /** Broadest below the middle, drawn-out tip: pear, birch, poplar. */
   "ovate"
@@ -223,7 +223,7 @@ export type BladeForm =
 
 /** A leaf's form. */
 export type BladeSpec = {
-  /** How far the tip bends down, as a share of the length, -1 to 1; default the form's. */
+  /** Downward bend of the tip, as a share of the length, -1 to 1; default the form's. */
   bend?: number | null;
   /** A leaf of your own instead of the form: marks (.csv), a vein graph (.json) or a model of one leaf (.glb, .obj, .ply, .stl), relative to the spec. */
   file?: string | null;
@@ -231,9 +231,9 @@ export type BladeSpec = {
   fold?: number | null;
   /** The form, default ovate. */
   form?: BladeForm;
-  /** Of a spray: length of a needle or scale over that of the spray, 0.01 to 0.6; default 0.1. */
+  /** For a spray: length of a needle or scale relative to that of the spray, 0.01 to 0.6; default 0.1. */
   needle?: number | null;
-  /** Of a spray: side shoots on each side, 0 to 12; default 3. */
+  /** For a spray: side shoots on each side, 0 to 12; default 3. */
   shoots?: number | null;
   /** Teeth of the margin on each side, 0 to 60; default none. */
   teeth?: number | null;
@@ -241,7 +241,7 @@ export type BladeSpec = {
   width?: number | null;
 };
 
-/** What flowers a tree bears where leaves would stand. */
+/** Flowers of a tree, in the place of leaves. */
 export type BlossomSpec = {
   /** Colour of petals, default a white. */
   color?: Colour;
@@ -249,19 +249,19 @@ export type BlossomSpec = {
   color_to?: 
     | Colour
     | null;
-  /** Across an open flower, metres, default 0.035. */
+  /** Diameter of an open flower, metres, default 0.035. */
   diameter_m?: number;
-  /** How far the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; of a goblet about 30. */
+  /** Angle by which the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; about 30 for a goblet. */
   open_deg?: number;
-  /** Width of a petal over that which closes the whorl, 0.1 to 1.5, default 1; of spikelets and plumes less. */
+  /** Width of a petal relative to that which closes the whorl, 0.1 to 1.5, default 1; less for spikelets and plumes. */
   petal_width?: number;
   /** Petals of a flower's whorl, 3 to 12, default 5. */
   petals?: number;
-  /** Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers but those that rules set. */
+  /** Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers except those that rules set. */
   share?: number;
-  /** Mean length of a flower's stalk over its diameter, 0.02 to 3, default 0.7. */
+  /** Mean length of a flower's stalk relative to its diameter, 0.02 to 3, default 0.7. */
   stalk?: number;
-  /** Width of the tuft of stamens over that of the flower, 0 to 1, default 0.3; 0: none is seen. */
+  /** Width of the tuft of stamens relative to that of the flower, 0 to 1, default 0.3; 0: none is visible. */
   tuft?: number;
   /** Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's. */
   whorls?: number;
@@ -284,9 +284,9 @@ export type BrushStroke = {
   radius_m: number[];
 };
 
-/** How the flowers of a cluster stand. */
+/** Arrangement of the flowers of a cluster. */
 export type Cluster = {
-  /** How far the axis arches over, degrees, 0 to 120, default 0. */
+  /** Angle by which the axis arches over, degrees, 0 to 120, default 0. */
   arch_deg?: number;
   /** Length of the axis that bears a raceme or a spike, metres, default 0. */
   axis_m?: number;
@@ -294,7 +294,7 @@ export type Cluster = {
   form?: ClusterForm;
   /** Length of the stalk of one flower, metres; 0, the default, for one that fits the flower. */
   pedicel_m?: number;
-  /** How far flowers all turn to the front, 0 evenly round to 1, default 0. */
+  /** Share to which all flowers turn to the front, from 0, evenly around, to 1; default 0. */
   sided?: number;
   /** Days from the first flower that opens to the last, 0 to 60, default 0. */
   spread_days?: number;
@@ -304,28 +304,28 @@ export type Cluster = {
 
 /** Kinds of clusters. */
 export type ClusterForm =
-  | /** All stalks from one place; outer flowers open first. */
+  | /** All stalks from one point; outer flowers open first. */
   "umbel"
   | /** Flowers along an axis, each on a stalk; lower ones open first. */
   "raceme"
   | /** Flowers along an axis, without stalks. */
   "spike";
 
-/** How branches grow towards attraction points. */
+/** Settings of the growth towards attraction points. */
 export type ColonizeSpec = {
   /** Distance `d_i` within which a joint perceives a point, metres, above 0, default 1. */
   attraction_m?: number;
   /** Share of the last direction kept in each step, 0 to 10, default 0. */
   inertia?: number;
-  /** Distance `d_k` at which a point is consumed, metres, above 0 and at most `attraction_m` (else that is raised to it, with a warning), default 0.4. */
+  /** Distance `d_k` at which a point is consumed, metres, above 0 and at most `attraction_m` (otherwise that is raised to it, with a warning), default 0.4. */
   kill_m?: number;
   /** Growth stops, with a warning, at this many joints; 1 to 2^31, default 4 million. */
   max_joints?: number;
-  /** A point steers one step before it is consumed, as in Yang et al. */
+  /** Whether a point steers one step before it is consumed, as in Yang et al. */
   steer_before_kill?: boolean;
   /** Length D of one step, metres; default half of `kill_m`. */
   step_m?: number | null;
-  /** What else pulls: light, gravity, wind. */
+  /** Other directions of growth: light, gravity, wind. */
   tropisms?: Tropism[];
 };
 
@@ -336,7 +336,7 @@ export type Colour = string;
 export type Disc = {
   /** Height of the dome as a share of its radius, 0 to 1.5, default 0.3. */
   dome?: number;
-  /** Linear colour of what is under the florets and of withered ones. */
+  /** Linear colour of the dome under the florets and of withered florets. */
   dry_color?: [number, number, number];
   /** Florets, 10 to 1000, default 280. */
   florets?: number;
@@ -350,15 +350,15 @@ export type Disc = {
 export type Envelope =
   | /** A ball. */
   {
-    /** Its middle. */
+    /** Its centre. */
     centre: [number, number, number];
-    /** Above 0. */
+    /** Its radius, above 0. */
     radius_m: number;
     shape: "sphere";
   }
   | /** A ball stretched along the axes. */
   {
-    /** Its middle. */
+    /** Its centre. */
     centre: [number, number, number];
     /** Half its extents, each above 0. */
     radii_m: [number, number, number];
@@ -366,9 +366,9 @@ export type Envelope =
   }
   | /** An upright cone, its point up. */
   {
-    /** Middle of its base. */
+    /** Centre of its base. */
     base: [number, number, number];
-    /** Above 0. */
+    /** Its height, above 0. */
     height_m: number;
     /** Radius of its base, above 0. */
     radius_m: number;
@@ -376,17 +376,17 @@ export type Envelope =
   }
   | /** An upright cylinder. */
   {
-    /** Middle of its base. */
+    /** Centre of its base. */
     base: [number, number, number];
-    /** Above 0. */
+    /** Its height, above 0. */
     height_m: number;
-    /** Above 0. */
+    /** Its radius, above 0. */
     radius_m: number;
     shape: "cylinder";
   }
   | /** A surface of revolution about the vertical through `base`. */
   {
-    /** Where the heights of the profile start. */
+    /** Origin of the heights of the profile. */
     base: [number, number, number];
     /** `(radius, height)`, at least 2 points, heights rising, radii 0 or more. */
     profile: [number, number][];
@@ -398,7 +398,7 @@ export type Envelope =
     centre_z_m: number;
     /** Depth over width, above 0; 1 gives round sections. */
     depth: number;
-    /** At least 3 points. */
+    /** The outline, at least 3 points. */
     polygon: [number, number][];
     shape: "outline";
   }
@@ -412,48 +412,48 @@ export type Envelope =
   }
   | /** A cloud of points: the space within `reach_m` of any of them. */
   {
-    /** At least one usable point. */
+    /** The points, at least one of them usable. */
     points: [number, number, number][];
-    /** Above 0. */
+    /** Distance from a point up to which the space counts, above 0. */
     reach_m: number;
     shape: "points";
   }
-  | /** Masses of foliage on limbs that each seed draws anew. */
+  | /** Masses of foliage on limbs, drawn anew for each seed. */
   {
-    /** From mass to mass along a limb, in radii of a mass, 0.3 to 6, default 1.3. */
+    /** Distance from mass to mass along a limb, in radii of a mass, 0.3 to 6, default 1.3. */
     apart?: number;
     /** Share of each limb, from the trunk on, that bears no mass, 0 to 0.95, default 0.4: the shaded inside. */
     bare?: number;
     /** Height above the root at which the profile starts, 0 to 1e6. */
     base_m: number;
-    /** How far limbs bend on their way, -1 (their ends hang) to 1 (they turn up), default 0. */
+    /** Bend of the limbs, -1 (their ends hang) to 1 (they turn up), default 0. */
     bend?: number;
-    /** How crooked trunk and limbs are, 0 (straight) to 1, default 0.2. */
+    /** Crookedness of trunk and limbs, 0 (straight) to 1, default 0.2. */
     crook?: number;
     /** Height of a mass over its width, 0.05 to 3, default 0.7: small values make layers. */
     flat?: number;
-    /** Share of the crown's height in which the trunk is still one, 0 to 1, default 1: a spruce has 1, an oak a half. */
+    /** Share of the crown's height up to which the trunk does not fork, 0 to 1, default 1: a spruce has 1, an oak a half. */
     leader?: number;
-    /** Limbs of a tree, 1 to 400; `variation.limbs` says how far trees differ. */
+    /** Limbs of a tree, 1 to 400; `variation.limbs` sets how much trees differ. */
     limbs: number;
     /** Radius of a mass of foliage, above 0. */
     mass_m: number;
-    /** What the crown fills: `(radius, height)`, at least 2 points, heights rising, radii 0 or more. */
+    /** Profile that the crown fills: `(radius, height)`, at least 2 points, heights rising, radii 0 or more. */
     profile: [number, number][];
-    /** How steeply limbs leave the trunk at the foot of the crown and at its top, degrees above the horizontal, -60 to 85, default 20 and 60. */
+    /** Angle of limbs at the trunk at the foot of the crown and at its top, degrees above the horizontal, -60 to 85, default 20 and 60. */
     rise_deg?: [number, number];
     shape: "limbs";
     /** Vertical distance between whorls of limbs, metres; default none: limbs stand in a spiral. */
     whorl_m?: number | null;
   };
 
-/** What becomes of petals in the end. */
+/** Fate of the petals at the end. */
 export type Fate =
-  | /** They wither where they are. */
+  | /** They wither in place. */
   "cling"
   | /** They fall, one after another, and lie on the ground. */
   "drop"
-  | /** They fall and are gone: of flowers high above the ground. */
+  | /** They fall and disappear: for flowers high above the ground. */
   "gone";
 
 /** Eq 2: growth of twigs and midribs inside a contour. */
@@ -478,23 +478,23 @@ export type FillSpec = {
 export type FlowerSpec = {
   /** Fruits with a parachute each, as dandelions have; default none. */
   achenes?: Achenes;
-  /** How the flowers of a cluster stand. */
+  /** Arrangement of the flowers of a cluster. */
   cluster?: Cluster;
-  /** How the disc looks. */
+  /** Appearance of the disc. */
   disc?: Disc;
   /** Radius of a disc of florets, metres; 0, the default, for none. */
   disc_m?: number;
-  /** The ovary and what grows of it; default none. */
+  /** The ovary and the fruit that grows from it; default none. */
   fruit?: Fruit;
-  /** Its leaves, a kind after the other. */
+  /** Its leaves, one kind after the other. */
   leaves?: Foliage[];
-  /** How fine a petal is meshed. */
+  /** Resolution of the mesh of a petal. */
   mesh?: PetalMesh;
   /** Name of the species. */
   name?: string;
   /** Angle by which the open flower nods, degrees, 0 to 120, default 0. */
   nod_deg?: number;
-  /** How far bud and wilted flower nod beside the open one. */
+  /** Nodding of bud and wilted flower relative to the open one. */
   nods?: Nods;
   /** Days from bud to full bloom, 0.1 to 60, default 6. */
   opening_days?: number;
@@ -504,11 +504,11 @@ export type FlowerSpec = {
   pistil_m?: number;
   /** Radius of its style, metres, 0 to 0.05; 0, the default, for one that fits its length. */
   pistil_radius_m?: number;
-  /** How much of the style falls as the fruit grows, 0 to 1, default 0. */
+  /** Share of the style that falls as the fruit grows, 0 to 1, default 0. */
   pistil_shed?: number;
   /** Rate of the flower's own growth law, per day, 0.01 to 100, default 0.95. */
   rate_per_day?: number;
-  /** Share of the wilting in which the fruit ripens, 0 to 0.9, default 0: it ends with petals withered. */
+  /** Share of the wilting in which the fruit ripens, 0 to 0.9, default 0: the flower ends with withered petals. */
   ripening?: number;
   /** Linear colour of the stalk. */
   stalk_color?: [number, number, number];
@@ -536,17 +536,17 @@ export type Foliage = {
   base?: number;
   /** Linear colour. */
   color?: [number, number, number];
-  /** How many, 1 to 200, default 3. */
+  /** Number of leaves, 1 to 200, default 3. */
   count?: number;
   /** Angle from one node to the next about the stalk, degrees, default 137.5. */
   divergence_deg?: number;
-  /** How far both halves are raised, degrees, -60 to 80, default 12. */
+  /** Angle by which both halves are raised, degrees, -60 to 80, default 12. */
   fold_deg?: number;
   /** Place of the lowest on the stalk as a share of its length, 0 to 1, default 0. */
   from?: number;
-  /** Distance of one to the next within it where several stand at one place, metres, default 0. */
+  /** Distance between neighbours, one within the other, if several stand at one place, metres, default 0. */
   gap_m?: number;
-  /** How far the blade reaches back on both sides of its stalk, as a share of the length, 0 to 0.6, default 0. */
+  /** Length of the basal lobes on both sides of the stalk, as a share of the blade's length, 0 to 0.6, default 0. */
   heart?: number;
   /** Leaflets of a pinnate leaf, 1 to 21, default 1: a simple leaf. */
   leaflets?: number;
@@ -554,17 +554,17 @@ export type Foliage = {
   length_m?: number;
   /** Their depth as a share of half the width, 0 to 0.9, default 0. */
   lobe_depth?: number;
-  /** Lobes or teeth of a side, 0 to 20, default 0. */
+  /** Lobes or teeth per side, 0 to 20, default 0. */
   lobes?: number;
   /** Length of the stalk of the leaf, metres, default 0. */
   petiole_m?: number;
   /** Turn of the first about the stalk, degrees, default 0. */
   phase_deg?: number;
-  /** How pointed the tip is, 0 round to 1, default 0.9. */
+  /** Pointedness of the tip, 0 round to 1, default 0.9. */
   point?: number;
-  /** How much smaller the last ones are, as a share, 0 to 0.9, default 0. */
+  /** Reduction of the size of the last ones, as a share, 0 to 0.9, default 0. */
   smaller?: number;
-  /** How much steeper the last ones stand, as a share, 0 to 1, default 0. */
+  /** Reduction of the angle of the last ones, which stand steeper, as a share, 0 to 1, default 0. */
   steeper?: number;
   /** Place of the highest, 0 to 1, default 0. */
   to?: number;
@@ -574,15 +574,15 @@ export type Foliage = {
   width_m?: number;
 };
 
-/** What leaves a tree bears. */
+/** Settings of the leaves of a tree. */
 export type FoliageSpec = {
-  /** Between shoot and blade, degrees, 0 to 180, default 55. */
+  /** Angle between shoot and blade, degrees, 0 to 180, default 55. */
   angle_deg?: number;
-  /** How they stand around the shoot, default a golden spiral. */
+  /** Arrangement around the shoot, default a golden spiral. */
   arrangement?: Arrangement;
-  /** How far blades hang, -1 to 1 (all down), default 0.15. */
+  /** Droop of the blades, -1 to 1 (all down), default 0.15. */
   droop?: number;
-  /** How far leaves are gathered towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip are `1 - gather` times as far from each other as `spacing_m`, those at its foot `1 + gather` times. */
+  /** Concentration of leaves towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip are `1 - gather` times as far from each other as `spacing_m`, those at its foot `1 + gather` times. */
   gather?: number;
   /** Share of the leaves kept, the best lit ones, 0 to 1; default 1. */
   leaf_keep?: number;
@@ -590,21 +590,21 @@ export type FoliageSpec = {
   length_m?: number;
   /** Most leaves that are considered, default 2 million. */
   max_leaves?: number;
-  /** Shoots bear leaves where they are not thicker than this, metres; default 0.009: two of the usual tips. */
+  /** Largest radius of shoots that bear leaves, metres; default 0.009: two of the usual tips. */
   max_radius_m?: number;
-  /** Leaves with less light fall in any case, 0 or more (full light is 1), default 0. */
+  /** Light below which leaves fall in any case, 0 or more (full light is 1), default 0. */
   min_light?: number;
-  /** Whether a leaf suffers from its own shadow, as in the paper (Palubicki adds it back). */
+  /** Whether a leaf is shaded by its own shadow, as in the paper (Palubicki adds it back). */
   self_shadow?: boolean;
-  /** What a leaf adds to the shadow of its own voxel (k of Eq 5), above 0, default 0.03. */
+  /** Contribution of a leaf to the shadow of its own voxel (k of Eq 5), above 0, default 0.03. */
   shade?: number;
-  /** The fall of the shadow from layer to layer (b of Eq 5), above 1, default 1.8. */
+  /** Factor by which the shadow decreases from layer to layer (b of Eq 5), above 1, default 1.8. */
   shade_fall?: number;
   /** Layers below a leaf that it shades, 1 to 32, default 6. */
   shade_layers?: number;
   /** Standard deviation of the length as a share of it, 0 to 0.5, default 0.1. */
   size_variation?: number;
-  /** Between two nodes of a shoot, metres, above 0, default 0.06. */
+  /** Distance between two nodes of a shoot, metres, above 0, default 0.06. */
   spacing_m?: number;
   /** Side of a voxel, metres; default two blade lengths. */
   voxel_m?: number | null;
@@ -612,7 +612,7 @@ export type FoliageSpec = {
   width?: number;
 };
 
-/** The ovary and the fruit that grows of it. */
+/** The ovary and the fruit that grows from it. */
 export type Fruit = {
   /** It grows below petals and sepals (an inferior ovary, a hip). */
   below?: boolean;
@@ -624,7 +624,7 @@ export type Fruit = {
   length_m?: number;
   /** Size of the ovary in full bloom as a share of the ripe fruit, 0.05 to 1, default 0.4. */
   ovary?: number;
-  /** Ribs round it, 0 to 20, default 0. */
+  /** Number of ribs around it, 0 to 20, default 0. */
   ribs?: number;
   /** Linear colour of the ripe fruit. */
   ripe_color?: [number, number, number];
@@ -638,51 +638,51 @@ export type Fruit = {
 export type Guide = {
   /** Its linear colour. */
   color?: [number, number, number];
-  /** Lines that it is made of, 0 to 9; 0, the default, for a blotch. */
+  /** Number of lines, 0 to 9; 0, the default, for a blotch. */
   lines?: number;
-  /** How far it reaches from the base along the petal, 0 to 1; 0, the default, for none. */
+  /** Reach from the base along the petal, 0 to 1; 0, the default, for none. */
   reach?: number;
-  /** How strong, 0 to 1, default 1. */
+  /** Strength, 0 to 1, default 1. */
   strength?: number;
-  /** How wide it is across the petal, 0 to 1, default 1. */
+  /** Width across the petal, 0 to 1, default 1. */
   width?: number;
 };
 
-/** Numbers of `GuidedSpec` that change while a tree grows; what is left out stays as it was. */
+/** Numbers of `GuidedSpec` that change while a tree grows; numbers that are left out stay. */
 export type GuidedChange = {
   /** Vigour per unit of free space, above 0 and at most 100. */
   alpha?: number | null;
-  /** Between a shoot and the buds at its side, 0 to 180 degrees. */
+  /** Angle between a shoot and its lateral buds, 0 to 180 degrees. */
   branch_angle_deg?: number | null;
   /** Share of the main axis at a fork (apical control), 0 to 1. */
   lambda?: number | null;
   /** Markers of one bud in one round, 4 to 10000. */
   markers?: number | null;
-  /** How strongly others' markers push away, 0 to 10. */
+  /** Strength of the repulsion by others' markers, 0 to 10. */
   repulsion?: number | null;
-  /** The first round that has them, from 0, at most 1000. */
+  /** The first round with these numbers, from 0, at most 1000. */
   round?: number;
-  /** All strokes that guide from then on. */
+  /** All guiding strokes from then on. */
   strokes?: BrushStroke[] | null;
   /** Weight and light. */
   tropisms?: Tropism[] | null;
 };
 
-/** The innermost of several rings, beside the outermost; those between go evenly. */
+/** The innermost of several rings, relative to the outermost; the rings between are interpolated. */
 export type Innermost = {
-  /** How much later it opens, as a share of the opening, 0 to 0.6, default 0. */
+  /** Delay of its opening, as a share of the opening, 0 to 0.6, default 0. */
   delay?: number;
-  /** How much higher it is inserted, metres, 0 to 1, default 0.002. */
+  /** Additional height of its insertion, metres, 0 to 1, default 0.002. */
   height_m?: number;
-  /** How far it opens and wilts from the bud, as a share, 0 to 1, default 1. */
+  /** Share by which it opens and wilts from the bud, 0 to 1, default 1. */
   open?: number;
   /** Distance from the axis as a share, 0 to 1, default 0.7. */
   radius?: number;
-  /** Its petals' size as a share, 0.05 to 2, default 1. */
+  /** Size of its petals as a share, 0.05 to 2, default 1. */
   size?: number;
 };
 
-/** Where the petals of a whorl are inserted. */
+/** Insertion of the petals of a whorl. */
 export type Insertion = {
   /** Height above the base of the flower, metres. */
   height_m: number;
@@ -690,7 +690,7 @@ export type Insertion = {
   radius_m: number;
 };
 
-/** What a drawing can show. */
+/** The kind of plant that a drawing shows. */
 export type Kind =
   | /** A flower on its stem, or its head alone. */
   "flower"
@@ -730,32 +730,32 @@ export type LeafDepth =
   | /** The front view of the model is the drawing; the blade leaves the plane by tilt and bend only. */
   "drawn";
 
-/** The form of a leaf with one midrib, where nothing was measured. */
+/** The form of a leaf with one midrib, used if nothing was measured. */
 export type LeafForm = {
-  /** How far both halves are raised along the midrib, degrees, -60 to 60, default 10. */
+  /** Angle by which both halves are raised along the midrib, degrees, -60 to 60, default 10. */
   fold_deg?: number;
   /** Length of the midrib, metres, 0.002 to 10, default 0.1. */
   length_m?: number;
-  /** How far the margin goes in between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
+  /** Depth of the margin between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
   lobes?: number;
   /** Angle between side veins and midrib, degrees, 15 to 85, default 50. */
   vein_angle_deg?: number;
   /** Pairs of side veins, 2 to 30, default 8. */
   veins?: number;
-  /** Where it is widest: 0.1 near the base to 0.9 near the tip, default 0.4. */
+  /** Position of the greatest width: 0.1 near the base to 0.9 near the tip, default 0.4. */
   widest?: number;
   /** Greatest width over length, 0.02 to 2, default 0.5. */
   width?: number;
 };
 
-/** What colours a measured blade. */
+/** Colouring of a measured blade. */
 export type LeafPaint =
   | /** Painted by the distance from the veins. */
   "veins"
   | /** One green. */
   "plain";
 
-/** How a leaf is made of its marks (Wang et al. */
+/** Construction of a leaf from its marks (Wang et al. */
 export type LeafSpec = {
   /** Control balls moved and rescaled by hand (Wang et al. */
   balls?: BallMove[];
@@ -763,7 +763,7 @@ export type LeafSpec = {
   caps?: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
   curl?: number;
-  /** The form of the leaf where nothing was measured. */
+  /** Form of the leaf if nothing was measured. */
   form?: LeafForm;
   /** Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1. */
   length_m?: number;
@@ -781,7 +781,7 @@ export type LeafSpec = {
   surface?: SurfaceKind;
   /** Colour of the blade. */
   texture?: LeafPaint;
-  /** What a measured thickness is; default what the file says, else the diameter. */
+  /** Meaning of a measured thickness; default that of the file, otherwise the diameter. */
   thickness?: 
     | ThicknessRule
     | null;
@@ -791,13 +791,13 @@ export type LeafSpec = {
   wilt?: number;
 };
 
-/** How buds learn how much light they have. */
+/** Model of the light that buds receive. */
 export type Light =
   | /** Shadow propagation: Q = max(C - s + a, 0), direction down the shadow's gradient. */
   {
-    /** What a joint adds to its own voxel, above 0 and at most 100. */
+    /** Contribution of a joint to its own voxel, above 0 and at most 100. */
     a: number;
-    /** The fall of the shadow from layer to layer, above 1 and at most 100. */
+    /** Factor by which the shadow decreases from layer to layer, above 1 and at most 100. */
     b: number;
     /** Full light C, above 0. */
     full: number;
@@ -807,18 +807,28 @@ export type Light =
     /** Side of a voxel, metres; default two internodes. */
     voxel_m?: number | null;
   }
-  | /** Space colonisation: Q = 1 for a bud that is nearest to a free marker in its cone, else 0. */
+  | /** Light from the sky: each internode bears a square leaf that lies level. */
   {
-    /** Where markers are, relative to the root. */
+    /** Q in the open, above 0, default 1. */
+    full?: number;
+    kind: "sky";
+    /** Edge of the leaf, metres; default an internode. */
+    leaf_m?: number | null;
+    /** Lines of light in each of 46 directions, 1,000 to 262,144, default 32,768: more are more exact and slower. */
+    lines?: number;
+  }
+  | /** Space colonisation: Q = 1 for a bud that is nearest to a free marker in its cone, otherwise 0. */
+  {
+    /** Space of the markers, relative to the root. */
     envelope: Envelope;
     /** Half opening angle of the cone of sight, degrees; 45. */
     half_angle_deg: number;
     kind: "space";
-    /** How many for each tree, 1 to 10 million. */
+    /** Markers for each tree, 1 to 10 million. */
     markers: number;
     /** Radius in which a joint removes markers, internodes; 2 in the paper. */
     occupancy: number;
-    /** Radius in which a bud sees markers, internodes; 4 to 6 in the paper. */
+    /** Radius in which a bud perceives markers, internodes; 4 to 6 in the paper. */
     perception: number;
   };
 
@@ -832,9 +842,9 @@ export type Look = {
   autumn_color_to?: 
     | Colour
     | null;
-  /** Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'; in spring they unfold nearly together, not one after another. */
+  /** Whether leaves turn and fall first on the outside of the crown, as in beech and maple, and not inside, as in birch; in spring they unfold nearly together, not one after another. */
   autumn_outside?: boolean;
-  /** What the bark is like. */
+  /** Kind of bark. */
   bark?: Bark;
   /** Mean colour of the bark of trunk and branches. */
   bark_color?: Colour;
@@ -846,23 +856,23 @@ export type Look = {
   foot_height?: number;
   /** Colour of leaves. */
   leaf_color?: Colour;
-  /** Colour towards which single leaves vary (young growth); default that of leaves. */
+  /** Colour towards which single leaves vary (young growth); default the leaf colour. */
   leaf_color_to?: 
     | Colour
     | null;
-  /** How far they vary, 0 to 1, default 0.5. */
+  /** Degree of that variation, 0 to 1, default 0.5. */
   leaf_variation?: number;
-  /** Depth of the furrows between ribs over the radius of the stem, 0 to 0.5, default 0.15. */
+  /** Depth of the furrows between ribs relative to the radius of the stem, 0 to 0.5, default 0.15. */
   rib_depth?: number;
   /** Ribs along thick stems, 0 to 32, default 0: round stems. */
   ribs?: number;
-  /** The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, from where leaves unfold; 0.5: all in the colours of autumn; 1: all fallen. */
+  /** The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, after which leaves unfold; 0.5: all in the colours of autumn; 1: all fallen. */
   season?: number;
   /** Mean colour of the bark of twigs. */
   twig_color?: Colour;
 };
 
-/** How a tree grows. */
+/** Method of growth. */
 export type Method =
   | /** Space colonisation (Runions 2007). */
   {
@@ -876,7 +886,7 @@ export type Method =
     /** Distances and pulls. */
     steps?: ColonizeSpec;
   }
-  | /** Space colonisation of points that are given instead of scattered. */
+  | /** Space colonisation of given points instead of scattered ones. */
   {
     kind: "points";
     /** Attraction points, metres; not relative to a root. */
@@ -894,7 +904,7 @@ export type Method =
     ball_m?: number | null;
     /** The space of the crown. */
     envelope?: Envelope;
-    /** The space that the first cycle fills, if it is another: a narrow one makes a trunk with few limbs, on which later cycles grow the branches. */
+    /** Space that the first cycle fills, if it differs: a narrow one makes a trunk with few limbs, on which later cycles grow the branches. */
     first_envelope?: 
       | Envelope
       | null;
@@ -917,20 +927,20 @@ export type Method =
     points_per_joint?: number;
     /** Factor on `d_i`, `d_k`, D and the ball from one cycle to the next, 0.1 to 1, default 1 (as in the paper). */
     shrink?: number;
-    /** Step D, default half of `d_k` (the paper does not give it; Runions asks for `d_k` of 2 D or more). */
+    /** Step D, default half of `d_k` (the paper does not give it; Runions requires `d_k` of 2 D or more). */
     step_m?: number | null;
     /** Vertical distance between the tiers of branches that grow on what the first cycle made; default none: anywhere. */
     tier_m?: number | null;
-    /** What else pulls. */
+    /** Other directions of growth. */
     tropisms?: Tropism[];
   }
   | /** Buds that compete for light (Palubicki 2009). */
   {
     /** Vigour per unit of light, above 0 and at most 100, default 2. */
     alpha?: number;
-    /** How axillary buds stand, default a golden spiral. */
+    /** Arrangement of the axillary buds, default a golden spiral. */
     arrangement?: Arrangement;
-    /** Between a shoot and the buds at its side, 0 to 180 degrees, default 60. */
+    /** Angle between a shoot and its lateral buds, 0 to 180 degrees, default 60. */
     branch_angle_deg?: number;
     /** Length of an internode at vigour 1, above 0, default 0.25. */
     internode_m?: number;
@@ -939,40 +949,40 @@ export type Method =
     kind: "self-organizing";
     /** Years until `lambda_late` holds, default 10. */
     lambda_years?: number;
-    /** How buds learn their light. */
+    /** Model of the light of buds. */
     light?: Light;
     /** Weight xi of the best-lit direction, 0 to 10, default 0.25. */
     light_weight?: number;
-    /** Most joints of all trees together; growth stops, with a warning, before the year that would make more. */
+    /** Most joints of all trees together; growth stops, with a warning, before the year that would exceed it. */
     max_joints?: number;
     /** Most internodes of one shoot a year, 1 to 100, default 6. */
     most_per_shoot?: number;
     /** Exponent n of the pipe model, 1 to 4, default 2.4. */
     pipe_exponent?: number;
-    /** How it is shared. */
+    /** Distribution of the resource. */
     resource?: Resource;
-    /** Whether a bud suffers from the shadow of its own leaf (Yang et al. */
+    /** Whether a bud is shaded by its own leaf (Yang et al. */
     self_shadow?: boolean;
-    /** Years that a branch is spared, default 3. */
+    /** Years for which a branch is spared, default 3. */
     shed_after_years?: number;
-    /** A branch with less light per internode is shed, 0 or more, default 0.15. */
+    /** Light per internode below which a branch is shed, 0 or more, default 0.15. */
     shed_below?: number;
     /** Radius of a fresh shoot, above 0, default 0.004. */
     tip_radius_m?: number;
-    /** Weight eta and direction of what else pulls, default 0.05 upwards. */
+    /** Weight eta and direction of other influences, default 0.05 upwards. */
     tropisms?: Tropism[];
     /** Years of growth, 0 to 1000, default 25. */
     years?: number;
   }
-  | /** Buds with markers of their own that keep away from others' and follow strokes of a brush (the VR paper). */
+  | /** Buds with their own markers that keep away from others' and follow strokes of a brush (the VR paper). */
   {
     /** Vigour per unit of free space, above 0 and at most 100, default 2. */
     alpha?: number;
-    /** How buds stand, default a golden spiral. */
+    /** Arrangement of the buds, default a golden spiral. */
     arrangement?: Arrangement;
-    /** Between a shoot and the buds at its side, 0 to 180 degrees, default 55. */
+    /** Angle between a shoot and its lateral buds, 0 to 180 degrees, default 55. */
     branch_angle_deg?: number;
-    /** Other numbers from some round on, in ascending order of rounds: the record of a hand that turned them while the tree grew. */
+    /** Changes of numbers from some round on, in ascending order of rounds: the record of the user's changes while the tree grew. */
     changes?: GuidedChange[];
     /** The space of the crown, relative to the root; default none: growth ends with its rounds. */
     envelope?: 
@@ -995,15 +1005,15 @@ export type Method =
     max_joints?: number;
     /** Most internodes of one shoot in one round, 1 to 100, default 3. */
     most_per_shoot?: number;
-    /** Occupancy radius, in internodes, 0 to 100, default 2: nearer to a bud there are no markers. */
+    /** Occupancy radius, in internodes, 0 to 100, default 2: there are no markers nearer to a bud. */
     near?: number;
-    /** How strongly others' markers push away, `k_r`, 0 to 10, default 1. */
+    /** Strength of the repulsion by others' markers, `k_r`, 0 to 10, default 1. */
     repulsion?: number;
     /** Rounds of growth, 0 to 1000, default 14. */
     rounds?: number;
-    /** Twigs of at most so many internodes that stopped growing are shed at the end, 0 (none) to 1000; default 1. */
+    /** Most internodes of stopped twigs that are shed at the end, 0 (none) to 1000; default 1. */
     shed_up_to?: number;
-    /** Strokes that guide it; with any, buds grow only inside them. */
+    /** Strokes that guide growth; with any, buds grow only inside them. */
     strokes?: BrushStroke[];
     /** Weight and light, `k_g g`; relative to the pull of free space. */
     tropisms?: Tropism[];
@@ -1013,15 +1023,15 @@ export type Method =
     kind: "lsystem";
     /** Most modules of all trees, 1 to 100 million. */
     most_modules: number;
-    /** Axiom and rules, one a line. */
+    /** Axiom and rules, one per line. */
     rules: string;
   };
 
-/** How far bud and wilted flower nod, as shares of the angle of the open one. */
+/** Nodding of bud and wilted flower, as shares of the angle of the open one. */
 export type Nods = {
-  /** Of the bud, 0 to 40, default 0.35. */
+  /** Share of the bud, 0 to 40, default 0.35. */
   bud?: number;
-  /** Of the wilted flower, 0 to 40, default 1.6. */
+  /** Share of the wilted flower, 0 to 40, default 1.6. */
   wilted?: number;
 };
 
@@ -1037,31 +1047,31 @@ export type Obstacle =
   }
   | /** A ball. */
   {
-    /** Its middle. */
+    /** Its centre. */
     centre: [number, number, number];
-    /** Above 0. */
+    /** Its radius, above 0. */
     radius_m: number;
     shape: "sphere";
   }
   | /** An upright cylinder. */
   {
-    /** Middle of its base. */
+    /** Centre of its base. */
     base: [number, number, number];
-    /** Above 0. */
+    /** Its height, above 0. */
     height_m: number;
-    /** Above 0. */
+    /** Its radius, above 0. */
     radius_m: number;
     shape: "cylinder";
   }
   | /** Everything behind a plane: a wall, a slope. */
   {
-    /** Away from the solid side; any length above 0. */
+    /** Direction away from the solid side; any length above 0. */
     normal: [number, number, number];
     /** Any point of the plane. */
     point: [number, number, number];
     shape: "plane";
   }
-  | /** A mesh, in metres, +Y up; small holes and inverted faces are borne (winding number). */
+  | /** A mesh, in metres, +Y up; small holes and inverted faces are tolerated (winding number). */
   {
     shape: "mesh";
     /** Corners of each triangle. */
@@ -1089,7 +1099,7 @@ export type PetalColor =
   | /** Crimson magenta. */
   "magenta";
 
-/** How fine a petal is meshed. */
+/** Resolution of the mesh of a petal. */
 export type PetalMesh = {
   /** Columns across, 2 to 100. */
   columns: number;
@@ -1099,15 +1109,15 @@ export type PetalMesh = {
 
 /** Roots that arch from the stem to the ground and carry it: mangroves, screw pines. */
 export type PropSpec = {
-  /** How many leave the stem, 0 to 200, default 0. */
+  /** Number of props that leave the stem, 0 to 200, default 0. */
   count?: number;
-  /** The chance that a further arch leaves one half-way down, 0 to 1, default 0.5. */
+  /** Probability that a further arch leaves one half-way down, 0 to 1, default 0.5. */
   fork?: number;
   /** Mean radius, metres, 0.001 to 5, default 0.025. */
   radius_m?: number;
-  /** How far from the stem the highest come down, metres, 0.01 to 50, default 1.5; each by half more or less. */
+  /** Distance from the stem at which the highest reach the ground, metres, 0.01 to 50, default 1.5; each varies by half. */
   reach_m?: number;
-  /** The height up to which they leave it when the tree is whole, metres, 0.01 to 50, default 1.5. */
+  /** Height up to which they leave it when the tree is complete, metres, 0.01 to 50, default 1.5. */
   rise_m?: number;
 };
 
@@ -1138,7 +1148,7 @@ export type ReliefSpec = {
   petal_hollow?: number;
 };
 
-/** How what was gathered is shared. */
+/** Distribution of the gathered resource. */
 export type Resource =
   | /** The extended Borchert-Honda model. */
   {
@@ -1159,14 +1169,14 @@ export type Resource =
     w_min: number;
   };
 
-/** How a ring of the tube is placed. */
+/** Placement of a ring of the tube. */
 export type RingRule =
   | /** A circle of the ball's radius in the plane across the centre line (Wang et al. */
   "plain"
   | /** The circle in which the ball touches the envelope of all balls: the exact surface. */
   "envelope";
 
-/** What is left on stems of branches that they lost: mean numbers, of which every seed has more or less. */
+/** Remains of lost branches on stems: mean numbers, which vary from seed to seed. */
 export type ScarSpec = {
   /** Limbs that broke off, 0 to 50, default 0. */
   broken_limbs?: number;
@@ -1174,13 +1184,13 @@ export type ScarSpec = {
   burls?: number;
   /** Hollows, where a stub has rotted away, 0 to 50, default 0. */
   hollows?: number;
-  /** Knots, where the stem has grown around a stub, by metre, 0 to 30, default 0. */
+  /** Knots, where the stem has grown around a stub, per metre, 0 to 30, default 0. */
   knots?: number;
-  /** Stubs of dead branches, by metre, 0 to 30, default 0. */
+  /** Stubs of dead branches per metre, 0 to 30, default 0. */
   stubs?: number;
 };
 
-/** Everything that can be asked of the sketch maker; saved with the document. */
+/** All settings of the sketch maker; saved with the document. */
 export type SketchSpec = {
   /** Depth of branches. */
   branch_depth?: BranchDepth;
@@ -1198,7 +1208,7 @@ export type SketchSpec = {
   phototropism?: number;
   /** Pipe model exponent t of Eq 6, 1.8 to 3. */
   pipe_exponent?: number | null;
-  /** What every plant of the drawing is taken for, whatever it looks like. */
+  /** The kind that every plant is taken for, whatever it looks like. */
   read_as?: 
     | Kind
     | null;
@@ -1208,7 +1218,7 @@ export type SketchSpec = {
   taper?: TaperSpec;
 };
 
-/** How a plant is given its surface. */
+/** Settings of a plant's surface. */
 export type SkinSpec = {
   /** Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade; counts grow in proportion. */
   detail?: number;
@@ -1218,7 +1228,7 @@ export type SkinSpec = {
     | null;
   /** Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. */
   sides?: number;
-  /** Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not to the day's, so that triangles are the same at every day. */
+  /** Size in full bloom, metres, of a plant that changes from day to day: fineness is relative to that and not to the day's size, so that triangles are the same on every day. */
   steady_m?: number | null;
   /** Give materials procedural textures; without, they have plain colours. */
   textures?: boolean;
@@ -1232,7 +1242,7 @@ export type Stamens = {
   anther?: number;
   /** Linear colour of the anthers with their pollen. */
   anther_color?: [number, number, number];
-  /** How many, 0 to 500. */
+  /** Number of stamens, 0 to 500. */
   count?: number;
   /** Linear colour of the filaments. */
   filament_color?: [number, number, number];
@@ -1240,7 +1250,7 @@ export type Stamens = {
   foot_m?: number;
   /** Length of one in an open flower, metres. */
   length_m?: number;
-  /** They fall as the flower wilts, 0 not at all to 1 before the petals, default 0. */
+  /** Share of the wilting at which they fall, from 0, not at all, to 1, before the petals; default 0. */
   shed?: number;
   /** Angle by which they spread from the axis, degrees, 0 to 180. */
   spread_deg?: number;
@@ -1259,9 +1269,9 @@ export type SurfaceKind =
 
 /** Roots that run along the ground from the foot of a stem, half sunk, until they are out of sight. */
 export type SurfaceRootSpec = {
-  /** How many leave each stem, 0 to 40, default 0; half of them fork. */
+  /** Number of roots of each stem, 0 to 40, default 0; half of them fork. */
   count?: number;
-  /** How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 5; each by two fifths more or less. */
+  /** Distance from the centre of the stem up to which they show, in its radii at the foot, 1.5 to 40, default 5; each varies by two fifths. */
   reach?: number;
 };
 
@@ -1275,20 +1285,20 @@ export type TaperSpec = {
   s?: number;
 };
 
-/** What a measured thickness is to its vein's ball. */
+/** Relation of a measured thickness to its vein's ball. */
 export type ThicknessRule =
   | /** A calliper's reading: the ball's diameter. */
   "diameter"
   | /** The ball's radius, as the formulas take it. */
   "radius";
 
-/** A kind of tree, where it stands and how it looks. */
+/** A kind of tree, with its site and appearance. */
 export type TreeSpec = {
-  /** One line about it. */
+  /** Description in one line. */
   about?: string;
-  /** The trees as they were at this age, in years of `years`; where that is not given, after so many rounds, years (self-organising) or rewriting steps (L-systems). */
+  /** Age at which the trees are shown, in years of `years`; without those, in rounds, years (self-organising) or rewriting steps (L-systems). */
   age?: number | null;
-  /** No leaves at all: a dead or winter tree. */
+  /** Whether there are no leaves at all: a dead or winter tree. */
   bare?: boolean;
   /** The form of a leaf. */
   blade?: BladeSpec;
@@ -1296,45 +1306,45 @@ export type TreeSpec = {
   blossom?: BlossomSpec;
   /** Distance that bark keeps from obstacles where there is room, metres, 0 to 1e6, default 0.05; leaves may touch. */
   clearance_m?: number;
-  /** How leaves stand, and how many fall. */
+  /** Arrangement of leaves, and their loss. */
   leaves?: FoliageSpec;
   /** Colours and bark. */
   look?: Look;
-  /** How they grow. */
+  /** Method of growth. */
   method?: Method;
-  /** For files and reports. */
+  /** Name in files and reports. */
   name?: string;
-  /** What they grow around; meshes may be named by `file`, in metres, +Y up. */
+  /** Obstacles that they grow around; meshes may be named by `file`, in metres, +Y up. */
   obstacles?: Obstacle[];
-  /** Where trees of this kind stand, metres; they compete. */
+  /** Positions of trees of this kind, metres; they compete. */
   roots?: [number, number, number][];
   /** Scientific name; may be empty. */
   species?: string;
-  /** How trees of this kind differ from seed to seed. */
+  /** Variation of trees of this kind from seed to seed. */
   variation?: VariationSpec;
-  /** How skeletons become wood. */
+  /** Conversion of skeletons to wood. */
   wood?: WoodSpec;
-  /** How old the tree is that the method grows, years, 1 to 5000. */
+  /** Age of the tree that the method grows, years, 1 to 5000. */
   years?: number | null;
 };
 
-/** A pull in one direction: light from above, weight downwards, wind. */
+/** An influence in one direction: light from above, weight downwards, wind. */
 export type Tropism = {
-  /** Where to; any length above 0. */
+  /** Direction of growth; any length above 0. */
   direction: [number, number, number];
-  /** Relative to the pull of free space (which is 1), -10 to 10. */
+  /** Strength relative to the pull of free space (which is 1), -10 to 10. */
   strength: number;
 };
 
-/** How far trees of this kind differ from seed to seed: in a wood, not on a drawing board. */
+/** Variation of trees of this kind from seed to seed: in a wood, not on a drawing board. */
 export type VariationSpec = {
-  /** Spread of the share by which a crown reaches further to one side, 0 to 0.4, default 0. */
+  /** Spread of the share by which a crown reaches farther to one side, 0 to 0.4, default 0. */
   asymmetry?: number;
   /** Share of the limbs that are dead: without leaves and fine twigs, 0 to 0.9, default 0. */
   dead?: number;
-  /** Chance that the trunk forks, 0 to 1, default 0. */
+  /** Probability that the trunk forks, 0 to 1, default 0. */
   fork?: number;
-  /** Coefficient of variation of the thickness of wood beyond what follows from the crown, 0 to 0.4, default 0. */
+  /** Coefficient of variation of the thickness of wood in addition to that of the crown, 0 to 0.4, default 0. */
   girth?: number;
   /** Coefficient of variation of the height, 0 to 0.4, default 0; the crown grows with it. */
   height?: number;
@@ -1342,13 +1352,13 @@ export type VariationSpec = {
   lean_deg?: number;
   /** Coefficient of variation of the number of limbs, 0 to 0.5, default 0. */
   limbs?: number;
-  /** Share of the limbs that storms or shade have taken whole, 0 to 0.5, default 0. */
+  /** Share of the limbs that storms or shade have removed completely, 0 to 0.5, default 0. */
   lost?: number;
-  /** Coefficient of variation of the crown's width beyond what follows from the height, 0 to 0.4, default 0. */
+  /** Coefficient of variation of the crown's width in addition to that of the height, 0 to 0.4, default 0. */
   width?: number;
 };
 
-/** Which parameters an interpolating side vein has. */
+/** Parameters of an interpolating side vein. */
 export type VeinParameters =
   | /** Those of the blade, so that the vein lies on it. */
   "shared"
@@ -1357,11 +1367,11 @@ export type VeinParameters =
 
 /** One ring of petals. */
 export type Whorl = {
-  /** How petals lie in the bud. */
+  /** Arrangement of the petals in the bud. */
   aestivation?: Aestivation;
-  /** Linear colour that petals go to as the days pass after full bloom. */
+  /** Linear colour that petals take as the days pass after full bloom. */
   aged_color?: [number, number, number];
-  /** How far they go to it, 0 to 1, default 0. */
+  /** Share of that colour, 0 to 1, default 0. */
   aging?: number;
   /** Linear colour at the base: shares of red, green and blue light. */
   base_color?: [number, number, number];
@@ -1371,27 +1381,27 @@ export type Whorl = {
   claw?: number;
   /** Share of the petal that is as narrow as its base (a clawed petal), 0 to 0.7, default 0. */
   claw_length?: number;
-  /** Petals, 1 to 200, default 6. */
+  /** Number of petals, 1 to 200, default 6. */
   count?: number;
-  /** How strongly petals are waved in bloom and crumpled when withered, 0 to 3, default 1. */
+  /** Strength of the waves of petals in bloom and of their crumpling when withered, 0 to 3, default 1. */
   crumple?: number;
-  /** How far the margins rise towards the axis of the flower, as a share of half the width, -1 to 1, default 0. */
+  /** Rise of the margins towards the axis of the flower, as a share of half the width, -1 to 1, default 0. */
   cup?: number;
-  /** Days that the whorl opens later than the first, as a share of the opening, 0 to 0.9, default 0. */
+  /** Delay of the opening of the whorl, as a share of the opening, 0 to 0.9, default 0. */
   delay?: number;
-  /** When the first of them falls, -1 to 0.9, default 0.3: -1 is the bud, 0 full bloom, 1 the end of wilting. */
+  /** Time at which the first of them falls, -1 to 0.9, default 0.3: -1 is the bud, 0 full bloom, 1 the end of wilting. */
   falls?: number;
-  /** What becomes of petals in the end. */
+  /** Fate of the petals at the end. */
   fate?: Fate;
-  /** How deeply the margin is fringed, 0 to 1, default 0. */
+  /** Depth of the fringe of the margin, 0 to 1, default 0. */
   fringe?: number;
-  /** How green the bud still is, 0 to 1, default 0. */
+  /** Greenness of the bud, 0 to 1, default 0. */
   green?: number;
   /** A mark that guides visitors to the nectar. */
   guide?: Guide;
   /** The innermost of several rings. */
   innermost?: Innermost;
-  /** Where petals are inserted. */
+  /** Insertion of the petals. */
   insertion?: Insertion;
   /** Lean within the whorl: distance of one edge to the other across the petal, metres, default 0.002. */
   lean_m?: number;
@@ -1403,21 +1413,21 @@ export type Whorl = {
   open_deg?: [number, number, number];
   /** Turn of the whorl about the axis, degrees, default 0. */
   phase_deg?: number;
-  /** How pointed the tip is: 1 is a point, 0 is round; default 0.5. */
+  /** Pointedness of the tip: 1 is a point, 0 is round; default 0.5. */
   point?: number;
-  /** Rings of as many petals, one within the other, 1 to 20, default 1. */
+  /** Rings with this number of petals, one within the other, 1 to 20, default 1. */
   rings?: number;
-  /** Angle to the axis at base, middle and tip when the fruit is ripe, degrees: of a flower that has `ripening`. */
+  /** Angle to the axis at base, middle and tip when the fruit is ripe, degrees: for a flower with `ripening`. */
   ripe_deg?: [number, number, number];
-  /** How far it goes from the wilted to the ripe angles, 0 to 1, default 0. */
+  /** Share of the way from the wilted to the ripe angles, 0 to 1, default 0. */
   ripens?: number;
-  /** Sepals or bracts: they keep their form when petals are replaced. */
+  /** Whether they are sepals or bracts, which keep their form when petals are replaced. */
   sepal?: boolean;
-  /** How much smaller withered petals are, 0 not at all to 1, default 1: a quarter shorter, nearly half as wide. */
+  /** Shrinking of withered petals, 0 not at all to 1, default 1: a quarter shorter, nearly half as wide. */
   shrivel?: number;
-  /** Angle from one petal to the next, degrees, 0 to 360; 0, the default, for evenly round the axis. */
+  /** Angle from one petal to the next, degrees, 0 to 360; 0, the default, for evenly around the axis. */
   spacing_deg?: number;
-  /** How much later the last petal of the ring opens than the first, as a share of the opening, 0 to 0.6, default 0. */
+  /** Delay of the last petal of the ring after the first, as a share of the opening, 0 to 0.6, default 0. */
   succession?: number;
   /** Linear colour at the tip. */
   tip_color?: [number, number, number];
@@ -1431,28 +1441,28 @@ export type Whorl = {
   wilted_deg?: [number, number, number];
 };
 
-/** How a skeleton becomes wood. */
+/** Conversion of a skeleton to wood. */
 export type WoodSpec = {
-  /** What every internode adds to the pipes, as a share of a tip's, 0 to 1, default 0.05. */
+  /** Contribution of every internode to the pipes, as a share of a tip's, 0 to 1, default 0.05. */
   internode_share?: number;
   /** Exponent t of `r^t = sum of r_i^t` (Yang et al. */
   pipe_exponent?: number;
   /** Roots that arch from the bole to the ground. */
   props?: PropSpec;
-  /** How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at forks become acute and courses straighter; each time costs half an internode of size. */
+  /** Number of times that every joint is moved half-way to its parent (Runions 2007, step e), 0 to 10: angles at forks become acute and courses straighter; each time costs half an internode of size. */
   relax?: number;
-  /** What is left on stems of branches that they lost. */
+  /** Remains of lost branches on stems. */
   scars?: ScarSpec;
   /** Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). */
   smooth?: boolean;
-  /** Roots that show around the foot of each stem. */
+  /** Visible roots around the foot of each stem. */
   surface_roots?: SurfaceRootSpec;
-  /** How much thicker the bole is than what its crown asks for, a factor, 1 to 20, default 1: baobabs and bottle trees store water there. */
+  /** Factor on the thickness of the bole relative to that which its crown needs, 1 to 20, default 1: baobabs and bottle trees store water there. */
   swell?: number;
-  /** Joints that bear nothing are left out where this takes the course aside by less than this share of the radius, 0 to 10, default 0.25. */
+  /** Tolerance for leaving out joints that bear nothing: the displacement of the course as a share of the radius, 0 to 10, default 0.25. */
   thin_out?: number;
   /** Radius of a tip, metres, above 0, default 0.004. */
   tip_radius_m?: number;
-  /** Radius at the foot of the thickest trunk when the tree is whole, metres: all radii, those of the tips and `max_radius_m` too, are scaled to it, so that the pipe model holds. */
+  /** Radius at the foot of the thickest trunk when the tree is complete, metres: all radii, including those of the tips and `max_radius_m`, are scaled to it, so that the pipe model holds. */
   trunk_radius_m?: number | null;
 };

@@ -3,45 +3,45 @@
 /** What has no type of its own here. */
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
-/** What an edit changed. */
+/** Changes made by an edit. */
 export type Changed = {
   /** Branches added. */
   added: number;
-  /** Branches that a mirror plane has on one side only: nothing bears them on the other, or an obstacle stands there. */
+  /** Branches that a mirror plane has on one side only: no wood bears them on the other, or an obstacle stands there. */
   alone?: number;
-  /** The branch was found by its likeness: its own key had changed. */
+  /** Whether the branch was found by its likeness because its own key had changed. */
   by_likeness: boolean;
   /** Leaves added. */
   leaves_added: number;
-  /** Leaves taken away. */
+  /** Leaves removed. */
   leaves_removed: number;
   /** Branches turned or moved, those borne included. */
   moved: number;
-  /** Branches taken away. */
+  /** Branches removed. */
   removed: number;
 };
 
-/** A measured value of a plant against what is plausible (`docs/limits.md` has the table). */
+/** A measured value of a plant and its plausible bound (`docs/limits.md` has the table). */
 export type CheckReport = {
-  /** What to do if it is not plausible. */
+  /** Advice for an implausible value. */
   advice: string;
-  /** What is plausible. */
+  /** The plausible bound. */
   bound: number;
-  /** What was measured, with its bound, as a sentence. */
+  /** The measured value, with its bound, as a sentence. */
   message: string;
-  /** A word that stays, such as `size-large`. */
+  /** A stable word, such as `size-large`. */
   name: string;
   /** Whether the value is plausible. */
   ok: boolean;
-  /** What it means if not. */
+  /** Meaning of an implausible value. */
   severity: SeverityWord;
-  /** On which side of the bound. */
+  /** The plausible side of the bound. */
   side: SideWord;
-  /** What was measured. */
+  /** The measured value. */
   value: number;
 };
 
-/** Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read. */
+/** Counts of a plant and its meshes; none where nothing was counted, such as the leaves of a model that was read. */
 export type Counts = {
   /** Axes of every kind. */
   axes: number | null;
@@ -61,18 +61,26 @@ export type Counts = {
   vertices: number;
 };
 
-/** What became of one edit. */
+/** Outcome of one edit. */
 export type EditReport = {
-  /** What it changed; all 0 if it was not done. */
+  /** Changes that it made; all 0 if it was not done. */
   changed: Changed;
-  /** `done`, or a stable word for why not. */
+  /** `done`, or a stable word for the reason why not. */
   code: string;
   /** Whether it was done. */
   done: boolean;
   /** Its place in the list, from 0. */
   index: number;
-  /** In plain words. */
+  /** The outcome in plain words. */
   said: string;
+};
+
+/** The program that an export is for. */
+export type EngineReport = {
+  /** Its word. */
+  name: string;
+  /** Settings that were made for it; in a report of the command as options. */
+  set: string[];
 };
 
 /** Vertices and faces of a mesh. */
@@ -83,19 +91,19 @@ export type FaceCounts = {
   vertices: number;
 };
 
-/** The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. */
+/** Comparison of the model's front view with the drawing, measured both ways; distances are shares of the drawing's diagonal. */
 export type FidelityReport = {
-  /** The share of the drawing's ink that was measured, by length, 0 to 1: strokes that were left out were not. */
+  /** The measured share of the drawing's ink, by length, 0 to 1: strokes that were left out were not measured. */
   compared: number | null;
-  /** Mean distance from the model's axes and outlines to the ink: what the model shows and nobody drew. */
+  /** Mean distance from the model's axes and outlines to the ink: parts that the model shows and nobody drew. */
   excess_mean: number | null;
-  /** 95 % of the model's axes and outlines are nearer than this. */
+  /** Distance within which 95 % of the model's axes and outlines lie. */
   excess_p95: number | null;
-  /** The area that filled contours (crowns, clusters) share with what grew in them, over the area of either, 0 to 1. */
+  /** The area that filled contours (crowns, clusters) share with their filling, over the area of their union, 0 to 1. */
   overlap: number | null;
   /** Mean distance from the drawn lines to the model's lines and outlines. */
   reprojection_mean: number | null;
-  /** 95 % of the drawn lines are nearer than this. */
+  /** Distance within which 95 % of the drawn lines lie. */
   reprojection_p95: number | null;
 };
 
@@ -103,13 +111,13 @@ export type FidelityReport = {
 export type GrowthReport = {
   /** Attraction points or markers of all cycles. */
   attractors: number;
-  /** Of these, consumed. */
+  /** Number of these consumed. */
   consumed: number;
   /** Life cycles. */
   cycles: number;
-  /** Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where there is no obstacle, or nothing was measured. */
+  /** Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none without an obstacle, or without a measurement. */
   inside_obstacle: number | null;
-  /** How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above. */
+  /** Depth of the deepest vertex inside an obstacle, metres; 0 if there is none inside; none as above. */
   inside_obstacle_depth_m: number | null;
   /** Rounds, years or rewriting steps. */
   iterations: number;
@@ -121,49 +129,49 @@ export type GrowthReport = {
   method: string;
   /** Joints of the skeleton. */
   nodes: number;
-  /** Of these, never reached. */
+  /** Number of these never reached. */
   unreachable: number;
 };
 
 /** One plant. */
 export type ItemReport = {
-  /** Of `shape --list`: the branches that were asked for. */
+  /** For `shape --list`: the branches that were asked for. */
   branches?: Json[];
-  /** What was checked of it: whether a person would accept it. */
+  /** Checks of whether a person would accept it. */
   checks: CheckReport[];
   /** Numbers of things. */
   counts: Counts;
   /** Fingerprint of the plant: independent of platform and threads. */
   digest: string;
-  /** Of a plant that was edited by hand: what became of each edit, in their order. */
+  /** For a plant that was edited by hand: the outcome of each edit, in their order. */
   edits?: EditReport[];
-  /** How near the model's front view is to the drawing. */
+  /** Distance between the model's front view and the drawing. */
   fidelity: FidelityReport;
-  /** Of `grow`: what growth did. */
+  /** For `grow`: figures of the growth. */
   growth?: 
     | GrowthReport
     | null;
-  /** Of `leaf`: veins, blade and how well they fit. */
+  /** For `leaf`: veins, blade and how well they fit. */
   leaf?: 
     | LeafReport
     | null;
   /** Name of the drawing. */
   name: string;
-  /** The file that was written; empty if none. */
+  /** The file written; empty if none. */
   output: string;
-  /** Of a plant with axes: what a botanist would measure on it. */
+  /** For a plant with axes: the measures that a botanist would take of it. */
   plant?: Json;
-  /** Of a drawing: what it may show, at most three: what it was read as first, then the others, the best first. */
+  /** For a drawing: at most three interpretations, the chosen one first, then the others, the best first. */
   readings?: ReadingReport[];
-  /** Every stroke and what became of it. */
+  /** Every stroke and its result. */
   strokes: StrokeReport[];
   /** Times of the stages. */
   timings_ms: TimingsMs;
-  /** What was not as the user might expect. */
+  /** Warnings for the user. */
   warnings: string[];
 };
 
-/** What a drawing can show. */
+/** The kind of plant that a drawing shows. */
 export type Kind =
   | /** A flower on its stem, or its head alone. */
   "flower"
@@ -194,13 +202,13 @@ export type Kind =
   | /** Nothing that was recognised. */
   "none";
 
-/** How far measured points are from the blade, millimetres. */
+/** Distances of measured points from the blade, millimetres. */
 export type LeafFit = {
   /** Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through. */
   explained: number;
-  /** The farthest. */
+  /** Largest distance. */
   max_mm: number;
-  /** 95 of 100 points are nearer. */
+  /** Distance within which 95 of 100 points lie. */
   p95_mm: number;
   /** Root of the mean square. */
   rms_mm: number;
@@ -212,15 +220,15 @@ export type LeafReport = {
   area_mm2: number;
   /** The blade's mesh; faces are quads. */
   blade: FaceCounts;
-  /** Rings at which a vein is thicker than it bends. */
+  /** Rings at which the vein's radius exceeds its radius of curvature. */
   crossing_rings: number | null;
-  /** Distances of what was measured from the blade. */
+  /** Distances of the measured points from the blade. */
   fit_error: LeafFit;
   /** Length of the midrib, millimetres. */
   length_mm: number;
   /** Rows of marks. */
   rows: number;
-  /** Of a scan: what was found in it. */
+  /** For a scan: its findings. */
   scan?: 
     | ScanReport
     | null;
@@ -228,7 +236,7 @@ export type LeafReport = {
   surface: string;
   /** Rings whose ball is inside its neighbours; none for plain rings. */
   swallowed_rings: number | null;
-  /** The farthest that a vein's centre line is from the blade, millimetres. */
+  /** Largest distance of a vein's centre line from the blade, millimetres. */
   vein_gap_mm: number | null;
   /** The veins' mesh; faces are quads (and triangles of caps). */
   veins: FaceCounts;
@@ -236,33 +244,33 @@ export type LeafReport = {
 
 /** A level of detail. */
 export type LevelView = {
-  /** What they are made of. */
+  /** Their materials. */
   materials: MaterialView[];
   /** Its meshes. */
   parts: PartView[];
 };
 
-/** How a mesh looks. */
+/** Appearance of a mesh. */
 export type MaterialView = {
-  /** Linear red, green, blue. */
+  /** Base colour: linear red, green, blue. */
   color: [number, number, number];
-  /** What it is of: bark, leaf, petal, ... */
+  /** Kind of surface: bark, leaf, petal, ... */
   kind: string;
   /** The texture has holes. */
   masked: boolean;
   /** Its name in files. */
   name: string;
-  /** Row of the normals of its relief, as glTF has them. */
+  /** Row of the normals of its relief, in the form of glTF. */
   normal: number | null;
-  /** Row of a picture in which red is occlusion and green is multiplied with the roughness. */
+  /** Row of a picture in which red is occlusion and green is a factor of the roughness. */
   orm: number | null;
-  /** 0 to 1. */
+  /** Roughness, 0 to 1. */
   roughness: number;
-  /** Row of its picture. */
+  /** Row of its colour texture. */
   texture: number | null;
-  /** 0 to 1. */
+  /** Share of light that passes through, 0 to 1. */
   translucency: number;
-  /** Seen from both sides. */
+  /** Visible from both sides. */
   two_sided: boolean;
 };
 
@@ -274,10 +282,14 @@ export type PartView = {
   name: string;
 };
 
-/** A plant as it was made. */
+/** A made plant. */
 export type PlantView = {
   /** Bud to full bloom, and from there to wilted, days; of what opens. */
   days: [number, number] | null;
+  /** The program that its files are for, and what was set for it. */
+  for: 
+    | EngineReport
+    | null;
   /** Levels of detail, the finest first. */
   levels: LevelView[];
   /** `tree`, `sketch`, `leaf` or `flower`. */
@@ -288,27 +300,27 @@ export type PlantView = {
   min: [number, number, number];
   /** Its name in files. */
   name: string;
-  /** The species, where it is one that comes with the program. */
+  /** The species, if it comes with the program. */
   preset: string | null;
   /** The entry of the report. */
   report: ItemReport;
-  /** Pictures; materials name them by row. */
+  /** Pictures, to which materials refer by row. */
   textures: TextureView[];
 };
 
 /** One interpretation of a whole drawing. */
 export type ReadingReport = {
-  /** The kind of plant; of several plants of different kinds that of the largest. */
+  /** The kind of plant; for several plants of different kinds that of the largest. */
   kind: Kind;
-  /** How many plants it would show. */
+  /** Number of plants in it. */
   plants: number;
-  /** How likely it is right, 0 to 1; of several plants their mean. */
+  /** Probability that it is right, 0 to 1; for several plants their mean. */
   score: number;
 };
 
-/** Why something was not done, for a shell: words for people in English, and what another language needs for its own. */
+/** Reason why a request was refused, for a shell: a sentence in English, and the values for one in another language. */
 export type Refusal = {
-  /** Those of the fields that are refusals themselves. */
+  /** Fields that are refusals themselves. */
   causes?: Record<string, Refusal>;
   /** A word in kebab-case that never changes its meaning. */
   code: string;
@@ -318,15 +330,15 @@ export type Refusal = {
   message: string;
 };
 
-/** What was found in a scan. */
+/** Findings of a scan. */
 export type ScanReport = {
-  /** Share of the blade that has a point within 2 mm; the rest are holes that were bridged. */
+  /** Share of the blade that has a point within 2 mm; the rest are bridged holes. */
   covered: number;
   /** Points left out because their neighbours are far. */
   outliers: number;
   /** Length of the outline, millimetres. */
   outline_mm: number;
-  /** Points read, without those that are no numbers. */
+  /** Points read, without those that are not numbers. */
   points: number;
   /** Length of the stalk, millimetres; none if there is no stalk. */
   stalk_mm: number | null;
@@ -334,14 +346,14 @@ export type ScanReport = {
   width_mm: number;
 };
 
-/** What a check that fails means. */
+/** Meaning of a failed check. */
 export type SeverityWord =
   | /** The result may be wrong. */
   "warning"
   | /** Nobody would accept the result. */
   "error";
 
-/** Which side of a bound is plausible. */
+/** The plausible side of a bound. */
 export type SideWord =
   | /** The bound or more. */
   "at_least"
@@ -350,15 +362,15 @@ export type SideWord =
 
 /** One stroke. */
 export type StrokeReport = {
-  /** What it is. */
+  /** Its class. */
   class: string;
-  /** How sure that class is, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did. */
+  /** Confidence in that class, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did. */
   confidence: number;
   /** Its index in the drawing, from 0. */
   index: number;
-  /** What became of it. */
+  /** The organ made of it. */
   organ: string;
-  /** What decided the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules). */
+  /** Source of the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules). */
   source?: string;
 };
 
@@ -376,7 +388,7 @@ export type TimingsMs = {
   classify: number;
   /** Filling, depth, radii. */
   depth: number;
-  /** Measuring how true the plant is to its drawing. */
+  /** Measuring the fidelity of the plant to its drawing. */
   fidelity: number;
   /** Measures and digest of the plant. */
   measure: number;
@@ -396,25 +408,27 @@ export type TimingsMs = {
   write: number;
 };
 
-/** What all makers are asked for. */
+/** Options of all makers. */
 export type Asked = {
   /** How many times the usual limits may be exceeded, 1 to 4. */
   budget?: number | null;
-  /** Fields of the maker's spec in the place of its own. */
+  /** The program that a file `glb` is for, such as `unity`: packed, blown and named as its importer takes it. */
+  engine?: string | null;
+  /** Fields that replace those of the maker's spec. */
   fields?: Record<string, Json>;
   /** Files of the finest copy by their extensions: `glb`, `mtg`, `opf`. */
   files?: string[];
-  /** Coarser copies to make as well, 0 to 6. */
-  lods?: number;
-  /** Fields of how it is meshed. */
+  /** Coarser copies to make as well, 0 to 6; by default none, or as many as the program wants. */
+  lods?: number | null;
+  /** Fields of the meshing. */
   skin?: SkinAsked;
 };
 
 /** A flower on a day. */
 export type FlowerAsked = {
-  /** What all makers are asked for. */
+  /** Options of all makers. */
   common?: Asked;
-  /** 0 is the bud; none for full bloom. */
+  /** The day: 0 is the bud; none for full bloom. */
   day?: number | null;
   /** A species. */
   preset?: string | null;
@@ -424,7 +438,7 @@ export type FlowerAsked = {
 
 /** A leaf of numbers, or of the text of a file of marks or veins. */
 export type LeafAsked = {
-  /** What all makers are asked for. */
+  /** Options of all makers. */
   common?: Asked;
   /** Its name. */
   name?: string | null;
@@ -434,31 +448,31 @@ export type LeafAsked = {
 
 /** A drawing: a file's name with its extension, or points. */
 export type SketchAsked = {
-  /** What strokes are, by number. */
+  /** Classes of strokes, by the number of the stroke. */
   classes?: Record<string, Json>;
-  /** What all makers are asked for. */
+  /** Options of all makers. */
   common?: Asked;
-  /** Its flowers open: the day. */
+  /** The day, if its flowers open. */
   day?: number | null;
-  /** Its name; the extension tells the format of a file. */
+  /** Its name; the extension gives the format of a file. */
   name?: string;
 };
 
-/** How a plant is meshed; what is left out is as usual. */
+/** Options of the meshing; missing ones have the usual values. */
 export type SkinAsked = {
-  /** The fields of its schema. */
+  /** Fields of its schema. */
   fields?: Record<string, Json>;
-  /** Pixels of a side of the textures of bark, and of the length of those of leaves, 64 to 4096. */
+  /** Pixels along a side of the textures of bark, and along the length of those of leaves, 64 to 4096. */
   texture_size?: number | null;
-  /** Columns that say how wind moves each vertex. */
+  /** Whether there are columns for the effect of the wind on each vertex. */
   wind?: boolean | null;
 };
 
 /** A tree. */
 export type TreeAsked = {
-  /** What all makers are asked for. */
+  /** Options of all makers. */
   common?: Asked;
-  /** Scales the wood to this height, metres. */
+  /** Height in metres to which the wood is scaled. */
   height_m?: number | null;
   /** A species. */
   preset?: string | null;

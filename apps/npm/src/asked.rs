@@ -1,9 +1,9 @@
-//! What is asked for in JSON; errors as JSON.
+//! Requests as JSON; errors as JSON.
 
 use std::fmt::Display;
 
 use burgeon::skin::SkinSpec;
-use burgeon::{Coded, Refusal, Run, Slip, Spec, SpecFault};
+use burgeon::{Coded, Engine, EngineReport, ExportChoice, Refusal, Run, Slip, Spec, SpecFault};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -12,9 +12,9 @@ use wasm_bindgen::prelude::*;
 
 use crate::host::with_budget;
 
-/// A `Refusal` as JSON: what JavaScript catches.
+/// A `Refusal` as JSON, which JavaScript catches.
 #[derive(Debug)]
-pub struct Refused(String);
+pub struct Refused(pub(crate) String);
 
 impl From<Refused> for JsValue {
     fn from(refused: Refused) -> Self {
@@ -23,12 +23,12 @@ impl From<Refused> for JsValue {
 }
 
 impl Refused {
-    /// In words alone.
+    /// Returns an error with a message, but without fields.
     pub(crate) fn plain(code: &str, message: String) -> Self {
         Self::with(code, &[], message)
     }
 
-    /// A word that is none of those that are known.
+    /// Returns the error for an unknown word.
     pub(crate) fn choice(path: &str, name: &str, choices: &str) -> Self {
         let hint = burgeon::meant(name, choices.split(", "));
         let message = format!("{path}: {name:?} is not known; there are {choices}{hint}");
@@ -40,21 +40,24 @@ impl Refused {
     }
 }
 
-/// An error of the core.
+/// Converts an error of the core.
 pub(crate) fn refused(error: &(impl Coded + Display)) -> Refused {
-    Refused(Refusal::of(error).into_json())
+    Refused(Refusal::from_error(error).into_json())
 }
 
-/// Reads what JavaScript says.
+/// Parses JSON from JavaScript.
 pub(crate) fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
     burgeon::spec::through_json::from_text(text).map_err(|e| {
         let message = e.to_string();
-        let refusal = Refusal { message: burgeon::plainly(&message), ..Refusal::of(&Slip::of(&message)) };
+        let refusal = Refusal {
+            message: burgeon::plainly(&message),
+            ..Refusal::from_error(&Slip::from_message(&message))
+        };
         Refused(refusal.into_json())
     })
 }
 
-/// A number within its range.
+/// Checks that a number is within its range.
 pub(crate) fn number(name: &str, value: f64, (min, max): (f64, f64)) -> Result<f64, Refused> {
     if (min..=max).contains(&value) {
         return Ok(value);
@@ -64,31 +67,34 @@ pub(crate) fn number(name: &str, value: f64, (min, max): (f64, f64)) -> Result<f
     Err(Refused::with("field-range", &[("field", name), ("value", &value), ("range", &range)], message))
 }
 
-/// What all makers are asked for.
+/// Options of all makers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Asked {
-    /// Fields of the maker's spec in the place of its own.
+    /// Fields that replace those of the maker's spec.
     pub fields: Map<String, Value>,
-    /// Fields of how it is meshed.
+    /// Fields of the meshing.
     pub skin: SkinAsked,
-    /// Coarser copies to make as well, 0 to 6.
-    pub lods: u32,
+    /// Coarser copies to make as well, 0 to 6; by default none, or as many as the program wants.
+    pub lods: Option<u32>,
+    /// The program that a file `glb` is for, such as `unity`: packed, blown and named as its importer takes it. The coarser
+    /// copies are nodes of that file, or come beside it as `lod1.glb` and so on.
+    pub engine: Option<String>,
     /// How many times the usual limits may be exceeded, 1 to 4.
     pub budget: Option<f64>,
     /// Files of the finest copy by their extensions: `glb`, `mtg`, `opf`.
     pub files: Vec<String>,
 }
 
-/// How a plant is meshed; what is left out is as usual.
+/// Options of the meshing; missing ones have the usual values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SkinAsked {
-    /// Columns that say how wind moves each vertex.
+    /// Whether there are columns for the effect of the wind on each vertex.
     pub wind: Option<bool>,
-    /// Pixels of a side of the textures of bark, and of the length of those of leaves, 64 to 4096.
+    /// Pixels along a side of the textures of bark, and along the length of those of leaves, 64 to 4096.
     pub texture_size: Option<u32>,
-    /// The fields of its schema.
+    /// Fields of its schema.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub fields: Map<String, Value>,
 }
@@ -97,18 +103,25 @@ pub struct SkinAsked {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TreeAsked {
-    /// What all makers are asked for.
+    /// Options of all makers.
     pub common: Asked,
     /// A species.
     pub preset: Option<String>,
     /// The text of a TOML file.
     pub toml: Option<String>,
-    /// Scales the wood to this height, metres.
+    /// Height in metres to which the wood is scaled.
     pub height_m: Option<f64>,
 }
 
+/// How files are written for a program.
+pub(crate) struct Settled {
+    pub(crate) engine: Engine,
+    pub(crate) choice: ExportChoice,
+    pub(crate) report: EngineReport,
+}
+
 impl Asked {
-    /// A spec with the fields that are asked for in the place of its own.
+    /// Returns a spec with the requested fields.
     pub(crate) fn spec<T: Spec>(&self, base: &T) -> Result<T, Refused> {
         put(base, &self.fields)
     }
@@ -124,12 +137,26 @@ impl Asked {
         self.skin.wind.unwrap_or(true)
     }
 
-    /// Levels of detail beside the finest.
+    /// Returns the number of levels of detail in addition to the finest.
     pub(crate) fn levels(&self) -> Result<u32, Refused> {
-        number("lods", f64::from(self.lods), (0.0, 6.0)).map(|_| self.lods)
+        let lods = self.settled()?.and_then(|s| s.choice.lods).or(self.lods).unwrap_or(0);
+        number("lods", f64::from(lods), (0.0, 6.0)).map(|_| lods)
     }
 
-    /// Computes within the budget that is asked for.
+    /// Returns the settings that the named program wants for a `glb`, if one is named.
+    pub(crate) fn settled(&self) -> Result<Option<Settled>, Refused> {
+        let Some(word) = &self.engine else { return Ok(None) };
+        let engine =
+            Engine::from_word(word).ok_or_else(|| Refused::choice("engine", word, &Engine::words()))?;
+        let still = !self.wind();
+        let mut choice = ExportChoice { lods: self.lods, is_still: still, ..ExportChoice::default() };
+        let set = engine.settle("glb", &mut choice);
+        let set = set.map_err(|e| Refused::plain("write", format!("engine {word}: {e}")))?;
+        let set = set.iter().map(ToString::to_string).collect();
+        Ok(Some(Settled { engine, choice, report: EngineReport { name: word.clone(), set } }))
+    }
+
+    /// Computes within the requested budget.
     pub(crate) fn run<T, E: Coded + Display>(
         &self,
         compute: impl FnOnce(&Run<'_>) -> Result<T, E>,

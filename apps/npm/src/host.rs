@@ -1,4 +1,4 @@
-//! What JavaScript gives: time, and a place for complaints.
+//! Services of JavaScript: time, and a place for complaints.
 
 use burgeon::{Budget, CancelToken, Clock, Run, Serial};
 #[cfg(target_arch = "wasm32")]
@@ -18,16 +18,16 @@ fn now() -> f64 {
     0.0
 }
 
-/// A quarter of the usual: WASM has 4 GiB of addresses, and a tab mostly less.
+/// Share of the usual limits: WASM has 4 GiB of addresses, and a tab mostly less.
 const SHARE: f64 = 0.25;
 
-/// Lets a panic say where it came from.
+/// Makes a panic report where it occurred.
 pub(crate) fn tell_of_panics() {
     #[cfg(target_arch = "wasm32")]
     std::panic::set_hook(Box::new(|info| error(&info.to_string())));
 }
 
-/// Computes within so many times the budget.
+/// Computes within `times` the budget.
 pub(crate) fn with_budget<T>(times: f64, compute: impl FnOnce(&Run<'_>) -> T) -> T {
     let budget = Budget { times: SHARE * times, raise: None };
     compute(&Run { cancel: &CancelToken::new(), executor: &Serial, clock: &Host, budget })

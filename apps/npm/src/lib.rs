@@ -2,10 +2,10 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `asked` | what is asked for, and what is wrong with it |
+//! | `asked` | requests and their errors |
 //! | `made` | [`Made`]: a plant and its levels, as columns |
-//! | `view` | what JavaScript is told of a plant; its types are `apps/npm/lib/wire.ts` |
-//! | `makers`, a feature | drawings, leaves, flowers; without it trees alone, in half of the download |
+//! | `view` | description of a plant for JavaScript; its types are `apps/npm/lib/wire.ts` |
+//! | `makers`, a feature | drawings, leaves, flowers; without it only trees, in half of the download |
 
 mod asked;
 mod host;
@@ -28,7 +28,7 @@ use crate::asked::{from_json, refused};
 /// Grows a tree: `TreeAsked` as JSON.
 ///
 /// # Errors
-/// What is wrong with it, as `Refusal` in JSON.
+/// The fault of the request, as `Refusal` in JSON.
 #[wasm_bindgen]
 pub fn grow(asked: &str, seed: u64) -> Result<Made, Refused> {
     host::tell_of_panics();
@@ -39,7 +39,7 @@ pub fn grow(asked: &str, seed: u64) -> Result<Made, Refused> {
             let preset = Preset::find(word).ok_or_else(|| Refused::choice("preset", word, &known()))?;
             (preset.spec().map_err(|e| refused(&e))?, Some(preset.key))
         }
-        // What a spec names lies in files, and there are none here.
+        // A spec names files, and there are none here.
         (None, Some(text)) => {
             (burgeon::read_tree_spec(text, &|_name| None).map_err(|e| refused(&e.in_text(text)))?, None)
         }
@@ -54,7 +54,7 @@ pub fn grow(asked: &str, seed: u64) -> Result<Made, Refused> {
     Made::of_tree(tree, (item, preset), &asked.common)
 }
 
-/// The keys of trees, and of flowers where there are any.
+/// Returns the keys of trees, and of flowers if there are any.
 #[wasm_bindgen]
 pub fn presets() -> String {
     let trees: Vec<&str> = burgeon::PRESETS.iter().map(|p| p.key).collect();
@@ -65,7 +65,7 @@ pub fn presets() -> String {
     serde_json::json!({ "trees": trees, "flowers": flowers }).to_string()
 }
 
-/// The JSON Schema of what a maker can be asked for: `tree` or `skin`, with `makers` also `sketch`, `leaf`, `flower`.
+/// Returns the JSON Schema of a maker's options: `tree` or `skin`, with `makers` also `sketch`, `leaf`, `flower`.
 ///
 /// # Errors
 /// There is no such maker.

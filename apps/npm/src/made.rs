@@ -1,25 +1,29 @@
-//! A plant that was made: its levels of detail as columns, its tables, its files.
+//! A made plant: its levels of detail as columns, its tables, its files.
 
 use std::sync::Arc;
 
 use burgeon::formats::{self, ExportSpec};
+#[cfg(feature = "makers")]
+use burgeon::formats::{PngCache, WriteError};
 use burgeon::mesh::{AlphaMode, Model, Part, Texture};
 use burgeon::plant::Plant;
 use burgeon::skin::{Layout, Owner};
 use burgeon::{ItemReport, TreeEvaluator, part_of_axis, part_of_organ};
+#[cfg(feature = "makers")]
+use burgeon::{name_after, write_engine_glb};
 use wasm_bindgen::prelude::*;
 
-use crate::asked::{Asked, Refused};
+use crate::asked::{Asked, Refused, Settled};
 use crate::view::{LevelView, MaterialView, PartView, PlantView, TextureView};
 
-/// Meshes at one level of detail, with what of which plant lies where in them.
+/// Meshes at one level of detail, with the parts of the plant that their triangles show.
 #[derive(Debug)]
 pub(crate) struct Level {
     pub(crate) model: Model,
     pub(crate) owners: Option<(Plant, Layout)>,
 }
 
-/// A plant, until its columns were fetched.
+/// A plant, kept until its columns have been fetched.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Made {
@@ -57,6 +61,7 @@ impl Made {
         days: Option<[f64; 2]>,
         asked: &Asked,
     ) -> Result<Self, Refused> {
+        let settled = asked.settled()?;
         let bounds = levels.first().map(|l| l.model.bounds()).filter(|b| !b.is_empty());
         let (min, max) = bounds.map_or_else(Default::default, |b| (b.min.to_array(), b.max.to_array()));
         let mut textures: Vec<Arc<Texture>> = Vec::new();
@@ -71,6 +76,7 @@ impl Made {
             maker,
             preset: preset.map(Into::into),
             report,
+            engine: settled.as_ref().map(|s| s.report.clone()),
             days,
             min,
             max,
@@ -79,10 +85,59 @@ impl Made {
         };
         let mut made = Self { view, levels, plant, textures, files: Vec::new() };
         for extension in &asked.files {
-            let bytes = made.file(extension)?;
-            made.files.push((extension.clone(), bytes));
+            match &settled {
+                Some(settled) if extension == "glb" => {
+                    let files = made.files_for(settled)?;
+                    made.files.extend(files);
+                }
+                _ => made.files.push((extension.clone(), made.file(extension)?)),
+            }
         }
         Ok(made)
+    }
+
+    /// The files of all levels for a program: `glb`, `lod1.glb`, ..., or one `glb` with all levels as nodes.
+    #[cfg(feature = "makers")]
+    fn files_for(&self, settled: &Settled) -> Result<Vec<(String, Vec<u8>)>, Refused> {
+        let (choice, failed) = (&settled.choice, |e: WriteError| Refused::plain("write", e.to_string()));
+        let (mut cache, mut files) = (PngCache::new(), Vec::new());
+        let named = |level: &Level| {
+            let mut model = level.model.clone();
+            if choice.has_names {
+                name_after(&self.view.name, &mut model);
+            }
+            model
+        };
+        if settled.engine.has_nodes(choice) {
+            let models: Vec<Model> = self.levels.iter().map(named).collect();
+            let (models, mut bytes) = (models.iter().collect::<Vec<_>>(), Vec::new());
+            write_engine_glb(settled.engine, &self.plant, &models, &mut cache, &mut bytes).map_err(failed)?;
+            return Ok(vec![("glb".to_owned(), bytes)]);
+        }
+        for (k, level) in self.levels.iter().enumerate() {
+            let model = named(level);
+            let mut bytes = Vec::new();
+            let rig =
+                choice.sways.then(|| burgeon::skin::sway(&model, burgeon::skin::gust(&model))).flatten();
+            let written = match (rig, choice.packing) {
+                (Some(rig), _) => formats::write_glb_rigged(&model, &rig, &mut cache, &mut bytes),
+                (None, Some(packing)) => formats::write_glb_packed(&model, packing, &mut cache, &mut bytes),
+                (None, None) => formats::write_glb_with(&model, &mut cache, &mut bytes),
+            };
+            written.map_err(failed)?;
+            files.push((if k == 0 { "glb".to_owned() } else { format!("lod{k}.glb") }, bytes));
+        }
+        Ok(files)
+    }
+
+    /// Trees alone are half of the download: they have no writers for programs.
+    #[cfg(not(feature = "makers"))]
+    fn files_for(&self, settled: &Settled) -> Result<Vec<(String, Vec<u8>)>, Refused> {
+        let engine = settled.engine.word();
+        let told = format!(
+            "files for a program (engine {engine}) are written by `burgeon`, not by `burgeon/growth`"
+        );
+        Err(Refused::plain("write", told))
     }
 
     fn file(&self, extension: &str) -> Result<Vec<u8>, Refused> {
@@ -138,24 +193,24 @@ fn material_view(m: &burgeon::mesh::Material, textures: &mut Vec<Arc<Texture>>) 
     }
 }
 
-/// -1 for none.
+/// Converts a handle; -1 for none.
 fn handle(raw: Option<u32>) -> i32 {
     raw.and_then(|r| i32::try_from(r).ok()).unwrap_or(burgeon::NOTHING)
 }
 
 #[wasm_bindgen]
 impl Made {
-    /// `PlantView` as JSON.
+    /// Returns `PlantView` as JSON.
     pub fn view(&self) -> String {
         serde_json::to_string(&self.view).unwrap_or_default()
     }
 
-    /// All that can be measured, as JSON.
+    /// Returns all measures, as JSON.
     pub fn measures(&self) -> String {
         serde_json::to_string(&self.plant.measure()).unwrap_or_default()
     }
 
-    /// A column of a mesh: `positions`, `normals`, `uvs`, `colors`, `wind`, `pivots`; empty where it has none.
+    /// Returns a column of a mesh: `positions`, `normals`, `uvs`, `colors`, `wind`, `pivots`; empty if it has none.
     pub fn column(&self, level: usize, part: usize, name: &str) -> Vec<f32> {
         let Some(mesh) = self.part(level, part).map(|p| &p.mesh) else { return Vec::new() };
         match name {
@@ -169,13 +224,13 @@ impl Made {
         }
     }
 
-    /// Three indices a triangle.
+    /// Returns three indices for each triangle.
     pub fn indices(&self, level: usize, part: usize) -> Vec<u32> {
         self.part(level, part).map_or_else(Vec::new, |p| p.mesh.triangles.as_flattened().to_vec())
     }
 
-    /// What the triangles of a mesh are of, in their order: for each piece the organ (-1: wood), its shape, and how many
-    /// triangles there are. Empty where that is not known.
+    /// Returns the pieces of a mesh, in the order of its triangles: for each the organ (-1: wood), its shape, and its
+    /// number of triangles. Empty if they are not known.
     pub fn pieces(&self, level: usize, part: usize) -> Vec<i32> {
         let Some((plant, layout)) = self.levels.get(level).and_then(|l| l.owners.as_ref()) else {
             return Vec::new();
@@ -191,7 +246,7 @@ impl Made {
         pieces.flat_map(row).collect()
     }
 
-    /// Where the organs of a level are: matrices of 16 numbers, column by column.
+    /// Returns the places of the organs of a level: matrices of 16 numbers, column by column.
     pub fn organs(&self, level: usize) -> Vec<f32> {
         let owners = self.levels.get(level).and_then(|l| l.owners.as_ref());
         let matrix = |o: &burgeon::plant::Organ| {
@@ -202,7 +257,7 @@ impl Made {
         owners.map_or_else(Vec::new, |(plant, _)| plant.organs.iter().flat_map(matrix).flatten().collect())
     }
 
-    /// Tables of the plant, in double precision: `position` (3 a node), `radius`.
+    /// Returns a table of the plant, in double precision: `position` (3 a node), `radius`.
     pub fn numbers(&self, name: &str) -> Vec<f64> {
         match name {
             "position" => self.plant.nodes.position.iter().flat_map(|p| p.to_array()).collect(),
@@ -211,8 +266,8 @@ impl Made {
         }
     }
 
-    /// Tables of whole numbers: `node_axis`; `axis_part`, `axis_order`, `axis_bearer`, `axis_first`, `axis_end`;
-    /// `organ_part`, `organ_bearer`, `organ_flower`. -1 for none.
+    /// Returns a table of whole numbers: `node_axis`; `axis_part`, `axis_order`, `axis_bearer`, `axis_first`,
+    /// `axis_end`; `organ_part`, `organ_bearer`, `organ_flower`. -1 for none.
     pub fn handles(&self, name: &str) -> Vec<i32> {
         let Plant { axes, organs, nodes, .. } = &self.plant;
         let whole = |n: u32| handle(Some(n));
@@ -230,20 +285,72 @@ impl Made {
         }
     }
 
-    /// RGBA bytes of a picture by its row.
+    /// Returns the RGBA bytes of a picture by its row.
     pub fn texture(&self, row: usize) -> Vec<u8> {
         self.textures.get(row).map_or_else(Vec::new, |t| t.pixels.clone())
     }
 
-    /// A file that was asked for, by its extension.
+    /// Returns a requested file, by its extension.
     pub fn take_file(&mut self, extension: &str) -> Vec<u8> {
         let found = self.files.iter_mut().find(|(name, _)| name == extension);
         found.map_or_else(Vec::new, |(_, bytes)| std::mem::take(bytes))
     }
 }
 
-/// The words of parts of plants, by the numbers in tables.
+/// Returns the words of parts of plants, by the numbers in tables.
 #[wasm_bindgen]
 pub fn parts() -> Vec<String> {
     burgeon::PARTS.iter().map(|p| (*p).to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use burgeon::mesh::{Material, MaterialId, MaterialKind, TriMesh};
+
+    fn made(engine: &str, lods: Option<u32>, files: &[&str]) -> Result<Made, Refused> {
+        let mesh = TriMesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            normals: vec![[0.0, 0.0, 1.0]; 3],
+            triangles: vec![[0, 1, 2]],
+            ..TriMesh::default()
+        };
+        let part = Part { name: "leaf".into(), material: MaterialId::new(0), mesh };
+        let materials = vec![Material::plain("leaf", MaterialKind::Leaf, [0.5; 3])];
+        let model = Model { name: "oak".into(), parts: vec![part], materials, offset_m: None };
+        let asked = Asked {
+            engine: Some(engine.into()),
+            lods,
+            files: files.iter().map(|f| (*f).to_owned()).collect(),
+            ..Asked::default()
+        };
+        let level = || Level { model: model.clone(), owners: None };
+        let levels: Vec<Level> = (0..=asked.levels()?).map(|_| level()).collect();
+        let report = ItemReport { name: "oak".into(), ..ItemReport::default() };
+        Made::new("tree", None, report, (levels, Plant::default()), None, &asked)
+    }
+
+    #[cfg(feature = "makers")]
+    #[test]
+    fn files_for_a_program_are_as_the_table_says() {
+        let unity = made("unity", None, &["glb"]).expect("files");
+        let names: Vec<&str> = unity.files.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["glb"], "levels are nodes of one file");
+        let text = String::from_utf8_lossy(&unity.files[0].1).into_owned();
+        assert!(text.contains("oak_leaf"), "names after the plant");
+        assert!(text.contains("plant_LOD0") && text.contains("plant_LOD3"), "a node for each level");
+        let told = unity.view.engine.expect("told");
+        assert_eq!((told.name.as_str(), told.set[0].as_str()), ("unity", "lods 3"));
+        let three = made("three", Some(0), &["glb"]).expect("files");
+        assert_eq!(three.files.len(), 1, "what is asked wins");
+        assert!(String::from_utf8_lossy(&three.files[0].1).contains("EXT_meshopt_compression"));
+    }
+
+    #[test]
+    fn programs_that_take_no_glb_and_unknown_ones_are_refused() {
+        for (engine, part) in [("isaac", ".usda or .usdz or .physics.usda, not .glb"), ("maya", "unity")] {
+            let Err(Refused(json)) = made(engine, None, &["glb"]) else { panic!("{engine} is refused") };
+            assert!(json.contains(part), "{json}");
+        }
+    }
 }

@@ -25,13 +25,13 @@ use crate::made::{Level, Made};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SketchAsked {
-    /// What all makers are asked for.
+    /// Options of all makers.
     pub common: Asked,
-    /// Its name; the extension tells the format of a file.
+    /// Its name; the extension gives the format of a file.
     pub name: String,
-    /// What strokes are, by number.
+    /// Classes of strokes, by the number of the stroke.
     pub classes: std::collections::BTreeMap<usize, String>,
-    /// Its flowers open: the day.
+    /// The day, if its flowers open.
     pub day: Option<f64>,
 }
 
@@ -39,7 +39,7 @@ pub struct SketchAsked {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeafAsked {
-    /// What all makers are asked for.
+    /// Options of all makers.
     pub common: Asked,
     /// Its name.
     pub name: Option<String>,
@@ -51,21 +51,21 @@ pub struct LeafAsked {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FlowerAsked {
-    /// What all makers are asked for.
+    /// Options of all makers.
     pub common: Asked,
     /// A species.
     pub preset: Option<String>,
     /// The text of a TOML file.
     pub toml: Option<String>,
-    /// 0 is the bud; none for full bloom.
+    /// The day: 0 is the bud; none for full bloom.
     pub day: Option<f64>,
 }
 
-/// The plant of a drawing: `SketchAsked` as JSON; the bytes of a file, or points (x, y upwards) of strokes one after another
-/// with the number of points of each.
+/// Makes the plant of a drawing: `SketchAsked` as JSON; the bytes of a file, or points (x, y upwards) of strokes one
+/// after another with the number of points of each.
 ///
 /// # Errors
-/// What is wrong with it, as `Refusal` in JSON.
+/// The fault of the request, as `Refusal` in JSON.
 #[wasm_bindgen]
 pub fn sketch(asked: &str, file: &[u8], points: &[f64], counts: &[u32], seed: u64) -> Result<Made, Refused> {
     host::tell_of_panics();
@@ -93,10 +93,10 @@ pub fn sketch(asked: &str, file: &[u8], points: &[f64], counts: &[u32], seed: u6
     let (id, strokes) = (plant.id(), plant.strokes().iter().map(|s| s.id).collect::<Vec<_>>());
     let spec = asked.common.spec(&SketchSpec::default())?;
     let mut commands = vec![
-        SketchCommand::SetSketch(Box::new(spec)).of(id),
-        SketchCommand::SetSkin(asked.common.skin()?).of(id),
-        PlantCommand::SetSeed(Seed::new(seed)).of(id),
-        SketchCommand::SetDay(asked.day).of(id),
+        SketchCommand::SetSketch(Box::new(spec)).for_plant(id),
+        SketchCommand::SetSkin(asked.common.skin()?).for_plant(id),
+        PlantCommand::SetSeed(Seed::new(seed)).for_plant(id),
+        SketchCommand::SetDay(asked.day).for_plant(id),
     ];
     for (row, word) in &asked.classes {
         let count = strokes.len().to_string();
@@ -105,7 +105,7 @@ pub fn sketch(asked: &str, file: &[u8], points: &[f64], counts: &[u32], seed: u6
         let known = || StrokeClass::ALL.map(StrokeClass::word).join(", ");
         let class = StrokeClass::from_word(word);
         let class = class.ok_or_else(|| Refused::choice(&format!("classes[{row}]"), word, &known()))?;
-        commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).of(id));
+        commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).for_plant(id));
     }
     let mut editor = Editor::new(document);
     for command in commands {
@@ -121,10 +121,10 @@ fn lines(name: &str, points: &[f64], counts: &[u32]) -> Drawing {
     Drawing::from_polylines(name, &lines)
 }
 
-/// A leaf: `LeafAsked` as JSON.
+/// Makes a leaf: `LeafAsked` as JSON.
 ///
 /// # Errors
-/// What is wrong with it, as `Refusal` in JSON.
+/// The fault of the request, as `Refusal` in JSON.
 #[wasm_bindgen]
 pub fn leaf(asked: &str, seed: u64) -> Result<Made, Refused> {
     host::tell_of_panics();
@@ -135,10 +135,10 @@ pub fn leaf(asked: &str, seed: u64) -> Result<Made, Refused> {
     alone(&name, Maker::Leaf(Box::new(LeafMaker { data, settings })), ("leaf", None), &asked.common, seed)
 }
 
-/// A flower: `FlowerAsked` as JSON.
+/// Makes a flower: `FlowerAsked` as JSON.
 ///
 /// # Errors
-/// What is wrong with it, as `Refusal` in JSON.
+/// The fault of the request, as `Refusal` in JSON.
 #[wasm_bindgen]
 pub fn bloom(asked: &str, seed: u64) -> Result<Made, Refused> {
     host::tell_of_panics();
@@ -158,7 +158,7 @@ pub fn bloom(asked: &str, seed: u64) -> Result<Made, Refused> {
     alone(&name, Maker::Flower(Box::new(flower)), of, &asked.common, seed)
 }
 
-/// The only plant of a document.
+/// Makes the only plant of a document.
 fn alone(
     name: &str,
     maker: Maker,

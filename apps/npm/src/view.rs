@@ -1,20 +1,23 @@
-//! What JavaScript is told of a plant. `cargo xtask types` writes these types as TypeScript.
+//! Description of a plant for JavaScript. `cargo xtask types` writes these types as TypeScript.
 
-use burgeon::ItemReport;
+use burgeon::{EngineReport, ItemReport};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A plant as it was made.
+/// A made plant.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlantView {
     /// Its name in files.
     pub name: String,
     /// `tree`, `sketch`, `leaf` or `flower`.
     pub maker: &'static str,
-    /// The species, where it is one that comes with the program.
+    /// The species, if it comes with the program.
     pub preset: Option<String>,
     /// The entry of the report.
     pub report: ItemReport,
+    /// The program that its files are for, and what was set for it.
+    #[serde(rename = "for")]
+    pub engine: Option<EngineReport>,
     /// Bud to full bloom, and from there to wilted, days; of what opens.
     pub days: Option<[f64; 2]>,
     /// Lower corner of its bounds, metres.
@@ -23,7 +26,7 @@ pub struct PlantView {
     pub max: [f64; 3],
     /// Levels of detail, the finest first.
     pub levels: Vec<LevelView>,
-    /// Pictures; materials name them by row.
+    /// Pictures, to which materials refer by row.
     pub textures: Vec<TextureView>,
 }
 
@@ -32,7 +35,7 @@ pub struct PlantView {
 pub struct LevelView {
     /// Its meshes.
     pub parts: Vec<PartView>,
-    /// What they are made of.
+    /// Their materials.
     pub materials: Vec<MaterialView>,
 }
 
@@ -45,28 +48,28 @@ pub struct PartView {
     pub material: usize,
 }
 
-/// How a mesh looks.
+/// Appearance of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MaterialView {
     /// Its name in files.
     pub name: String,
-    /// What it is of: bark, leaf, petal, ...
+    /// Kind of surface: bark, leaf, petal, ...
     pub kind: &'static str,
-    /// Linear red, green, blue.
+    /// Base colour: linear red, green, blue.
     pub color: [f32; 3],
-    /// 0 to 1.
+    /// Roughness, 0 to 1.
     pub roughness: f32,
-    /// 0 to 1.
+    /// Share of light that passes through, 0 to 1.
     pub translucency: f32,
     /// The texture has holes.
     pub masked: bool,
-    /// Seen from both sides.
+    /// Visible from both sides.
     pub two_sided: bool,
-    /// Row of its picture.
+    /// Row of its colour texture.
     pub texture: Option<usize>,
-    /// Row of the normals of its relief, as glTF has them.
+    /// Row of the normals of its relief, in the form of glTF.
     pub normal: Option<usize>,
-    /// Row of a picture in which red is occlusion and green is multiplied with the roughness.
+    /// Row of a picture in which red is occlusion and green is a factor of the roughness.
     pub orm: Option<usize>,
 }
 

@@ -189,11 +189,11 @@ test('what is wrong is named: field, value and range', async () => {
   };
   const trees = TREES.join(', ').slice(0, 20);
   await wrong(grow('oka'), { code: 'spec-choice', field: 'preset', value: 'oka', range: trees });
-  await wrong(grow('oak', { sed: 3 }), { code: 'spec-unknown', field: 'sed', range: 'seed, wind, lods, bu' });
+  await wrong(grow('oak', { sed: 3 }), { code: 'spec-unknown', field: 'sed', range: 'seed, wind, lods, en' });
   await wrong(bloom('rose', { detail: 1 }), {
     code: 'spec-unknown',
     field: 'detail',
-    range: 'seed, wind, lods, bu',
+    range: 'seed, wind, lods, en',
   });
   await wrong(grow('oak', { fields: { agee: 3 } }), { code: 'spec-unknown', field: 'agee' });
   await wrong(grow('oak', { fields: { leaves: { leaf_kept: 1 } } }), {

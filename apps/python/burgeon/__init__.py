@@ -6,9 +6,9 @@
 (3, True)
 
 ``grow``, ``sketch``, ``leaf``, ``bloom`` and ``scan`` make a ``Plant``; its tables are NumPy arrays, ``plant.model`` its meshes,
-``plant.cloud()`` its points as a scanner sees them. ``burgeon.dataset`` makes thousands; ``burgeon.forest`` has stands of up to
-millions of trees. Lengths are metres, +y is up;
-the same spec and seed give the same bits on every machine and as the command line.
+``plant.cloud()`` its points as a scanner measures them. ``burgeon.dataset`` makes thousands; ``burgeon.forest`` has stands of up
+to millions of trees. Lengths are metres, +y is up; the same spec and seed give the same bits on every machine and as the command
+line.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Not before they are used: they import more.
+    # Imported on first use, because they import more.
     if name in ("dataset", "forest", "labels"):
         import importlib
 

@@ -37,7 +37,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: "Optional[List[str]]" = None) -> int:
-    """Runs a command; 2 for what cannot be made."""
+    """Runs a command; returns 2 for a request that cannot be made."""
     asked = _parser().parse_args(arguments)
     if asked.command == "presets":
         trees, flowers = bg.presets()

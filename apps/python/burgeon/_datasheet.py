@@ -1,4 +1,4 @@
-"""What a person must know of a data set before they use it: the questions of Datasheets for Datasets (Gebru et al. 2021)."""
+"""The datasheet of a data set: answers to the questions of Datasheets for Datasets (Gebru et al. 2021)."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ HOLDS = {
     "picture": "a picture with masks of part, axis and organ, and its depth",
     "labels": "pictures by calibrated cameras with masks, instances, keypoints, depth and normals",
 }
-"""Of each format what it is."""
+"""Description of each format."""
 
 
 def datasheet(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> bytes:
-    """The page, from the recipe and the shards alone."""
+    """Returns the page, from the recipe and the shards alone."""
     spec = recipe["spec"] if isinstance(recipe["spec"], str) else "a spec of its own (recipe.json)"
     size = sum(entry["bytes"] for entry in shards)
     holds = [f"- {HOLDS.get(kind, f'its structure ({kind})')}" for kind in recipe["formats"]]

@@ -1,4 +1,4 @@
-"""Labels of a data set as other programs read them: COCO, YOLO, and pictures of numbers."""
+"""Labels of a data set in the formats of other programs: COCO, YOLO, and pictures of numbers."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     import numpy as np
 
 KINDS = ("coco", "panoptic", "keypoints", "yolo", "depth", "normals", "semantic", "instance", "cloud")
-"""What can be asked for."""
+"""The kinds of labels."""
 SPLITS = ("train", "val")
-"""Folders of pictures: what is learnt from, and what was held out."""
+"""Folders of pictures: for training, and held out for validation."""
 
 
 def export(
@@ -86,7 +86,7 @@ class _Rows:
     """A list of a JSON file that grows row by row: a data set's annotations need not fit into memory."""
 
     def __init__(self, folder: str) -> None:
-        # Open as long as the folder is being written, which closes it.
+        # Open until the folder is complete; the folder closes it.
         self.file = tempfile.TemporaryFile("w+", encoding="utf-8", dir=folder)  # noqa: SIM115
         self.count = 0
 
@@ -161,7 +161,7 @@ class _Folder:
             self.put("depth", split, f"{name}.npy", data=_npy(shot.depth))
         masks: Any = shot.masks
         if "normals" in self.kinds:
-            # Of the camera: x right, y up, z towards it, -1 to 1 as 0 to 255; nothing is black.
+            # In the frame of the camera: x right, y up, z towards it, -1 to 1 as 0 to 255; nothing is black.
             turn = shot.camera.pose[:3, :3] * [[1.0], [-1.0], [-1.0]]
             own = masks.normal.astype(np.float64) @ turn.T
             there = np.square(own).sum(axis=2, keepdims=True) > 0
@@ -177,7 +177,8 @@ class _Folder:
             )
 
     def cloud(self, split: str, plant: "Mapping[str, Any]") -> None:
-        """Points with what each is: ``semantic`` as in pictures, a row of ``burgeon.PARTS`` and 1; ``instance`` as there."""
+        """Writes points with their labels: ``semantic`` as in pictures, a row of ``burgeon.PARTS`` plus 1; ``instance`` as
+        there."""
         import numpy as np
 
         self.clouds += 1
@@ -210,7 +211,7 @@ class _Folder:
 
 
 def shots(plant: "Mapping[str, Any]") -> "Iterator[Tuple[str, labels.Shot, bytes]]":
-    """The pictures of a plant that was read from a data set: their names, themselves and their files."""
+    """Returns the pictures of a plant from a data set: their names, themselves and their files."""
     import numpy as np
 
     k = 0

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Files that are written completely or not at all."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any, Iterable, List, Tuple
 
 
 def inside(folder: "str | os.PathLike[str]", name: Any) -> str:
-    """The path of a file that a file of a data set names: one of the same folder, not a link out of it, not a pipe or device.
+    """Returns the path of a file that a file of a data set names: in the same folder, not a link out of it, not a pipe or device.
 
-    A data set is a folder that moves as a whole, so there is no need to trust it with paths. Of a file that is not there the path
-    as well: who opens it says so.
+    A data set is a folder that moves as a whole, so there is no need to trust it with paths. A missing file gives its path as
+    well: opening it raises the error.
     """
     if not isinstance(name, str) or name in ("", ".", "..") or "/" in name or "\\" in name or "\0" in name:
         raise ValueError(
@@ -29,7 +29,7 @@ def inside(folder: "str | os.PathLike[str]", name: Any) -> str:
 
 
 def write_whole(folder: str, files: "Iterable[Tuple[str, bytes]]") -> None:
-    """Writes files beside their places and renames them; after an error none of them is there, the old ones still are."""
+    """Writes files next to their places and renames them; after an error there are none of them, and the old ones remain."""
     folder = folder or "."
     drafts: "List[Tuple[str, str]]" = []
     place = folder
@@ -45,12 +45,12 @@ def write_whole(folder: str, files: "Iterable[Tuple[str, bytes]]") -> None:
             mask = os.umask(0)
             os.umask(mask)
             os.chmod(draft, 0o666 & ~mask)
-        # The first is what names the others: last.
+        # The first file names the others, so it comes last.
         for draft, place in reversed(drafts):
             os.replace(draft, place)
         drafts = []
     except OSError as error:
-        # Of the file that was asked for: nobody knows the drafts.
+        # Names the requested file: nobody knows the drafts.
         raise OSError(error.errno, error.strerror, place) from None
     finally:
         for draft, _ in drafts:

@@ -1,4 +1,4 @@
-"""What is passed, checked before it crosses into the core: errors name the argument, what it was, and what it may be."""
+"""Checks of arguments before they cross into the core: errors name the argument, its value, and the valid range."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
 
 ENDLESS = float("inf")
 FORMATS = {word: (kind, frozenset(rooms)) for kind, word, _, rooms in _burgeon.formats()}
-"""Of each format of models and of structure that is written, its kind and what its files have room for."""
+"""Kind of each written format of models and of structure, and the contents for which its files have room."""
 STRUCTURES = tuple(word for word, (kind, _) in FORMATS.items() if kind == "structure")
-"""What the structure of a plant is written as."""
+"""Formats of the structure of plants."""
 
 
 def holds(word: str, room: str) -> bool:
-    """Whether files of a format have room for something."""
+    """Returns whether files of a format have room for a kind of content."""
     return room in FORMATS.get(word, ("", ()))[1]
 
 
 def whole(name: str, value: Any, least: int, most: int) -> int:
-    """A whole number within its range; also one of NumPy."""
+    """Returns a whole number within its range, also from NumPy."""
     try:
-        # True is no number of anything.
+        # True is not a number.
         if isinstance(value, bool):
             raise TypeError
         number = operator.index(value)
@@ -43,17 +43,17 @@ def whole(name: str, value: Any, least: int, most: int) -> int:
 
 
 def beyond(name: str, value: Any, bounds: str) -> SpecError:
-    """An argument that is not what it may be, as the core says it."""
+    """Returns the error for an argument out of its range, with the message of the core."""
     return wrong(f"{name} must be {bounds}, not {value}", name, value, bounds)
 
 
 def wrong(message: str, name: str, value: Any, bounds: str) -> SpecError:
-    """The same in words of its own."""
+    """Returns the same error with a message of its own."""
     return SpecError(message, "field-range", {"field": name, "value": str(value), "range": bounds})
 
 
 def number(name: str, value: Any, least: float = -ENDLESS, most: float = ENDLESS, unit: str = "") -> float:
-    """A finite number within its range; also one of NumPy."""
+    """Returns a finite number within its range, also from NumPy."""
     bounds = "" if math.isinf(least) else f"{least:g} to {most:g} {unit}".rstrip()
     if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or getattr(value, "shape", ()) != ():
         raise TypeError(f"{name} must be a number{', ' + bounds if bounds else ''}, not {value!r}")
@@ -67,21 +67,21 @@ def number(name: str, value: Any, least: float = -ENDLESS, most: float = ENDLESS
 
 
 def flag(name: str, value: Any) -> bool:
-    """True or False; also one of NumPy."""
+    """Returns True or False, also from NumPy."""
     if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
         return bool(value)
     raise TypeError(f"{name} must be True or False, not {value!r}")
 
 
 def word(name: str, value: Any) -> str:
-    """A text. Which words there are, the core knows."""
+    """Returns a text. The core checks whether it is a known word."""
     if isinstance(value, str):
         return value
     raise TypeError(f"{name} must be a text, not {value!r}")
 
 
 def table(name: str, value: Any) -> "Dict[str, Any]":
-    """A dict with texts as its keys; an empty one for None."""
+    """Returns a dict with texts as its keys; an empty one for None."""
     if value is None:
         return {}
     if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
@@ -90,7 +90,7 @@ def table(name: str, value: Any) -> "Dict[str, Any]":
 
 
 def points(scan: Any, name: str = "scan") -> "np.ndarray":
-    """Points of a scan as (n, 3) float64."""
+    """Returns the points of a scan as (n, 3) float64."""
     import numpy as np
 
     array = np.asarray(scan)
@@ -106,7 +106,8 @@ def points(scan: Any, name: str = "scan") -> "np.ndarray":
 
 
 def coloured(scan: Any, name: str = "scan") -> "Tuple[np.ndarray, bytes]":
-    """Points of a scan as (n, 3) float64 and, of an array with red, green and blue (0 to 255) after them, those as bytes."""
+    """Returns the points of a scan as (n, 3) float64 and, from an array with red, green and blue (0 to 255) after them, those as
+    bytes."""
     import numpy as np
 
     array = np.asarray(scan)
@@ -120,12 +121,12 @@ def coloured(scan: Any, name: str = "scan") -> "Tuple[np.ndarray, bytes]":
 
 
 def unused(name: str, value: Any, needs: str) -> SpecError:
-    """An argument that would change nothing; `needs` says of what it is."""
+    """Returns the error for an argument that would change nothing; `needs` says where it applies."""
     return wrong(f"{name} {needs}", name, value, "left out")
 
 
 def axes(extension: str, unit: str, up: "str | None") -> None:
-    """Fails on a unit or an axis where the format has its own."""
+    """Fails on a unit or an axis if the format has its own."""
     if extension == "burgeon" or (extension in FORMATS and not holds(extension, "axes")):
         for name, value, own in (("unit", unit, "m"), ("up", up or "y", "y")):
             if word(name, value) != own:
@@ -133,14 +134,14 @@ def axes(extension: str, unit: str, up: "str | None") -> None:
 
 
 def path(name: str, value: Any) -> str:
-    """A path. A number is none: as one it would be a file that is open."""
+    """Returns a path. A number is refused: as a path it would mean an open file."""
     if isinstance(value, (str, os.PathLike)):
         return os.fsdecode(value)
     raise TypeError(f"{name} must be a path, not {value!r}")
 
 
 def keys(name: str, given: "Mapping[str, Any]", known: "Iterable[str]") -> None:
-    """Fails on a key that is not known, and says which is meant."""
+    """Fails on an unknown key, and names the one that is probably meant."""
     known = list(known)
     for key in given:
         if key not in known:
@@ -150,7 +151,7 @@ def keys(name: str, given: "Mapping[str, Any]", known: "Iterable[str]") -> None:
 
 
 def asked_of(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
-    """A maker's request as the core takes it; of ``skin``, None stands for what is not asked."""
+    """Returns a maker's request for the core; in ``skin``, None stands for a missing field."""
     if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
         raise beyond("seed", repr(seed), "a whole number, 0 to 2^64 - 1")
     return {

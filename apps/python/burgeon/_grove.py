@@ -28,7 +28,7 @@ __all__ = ["Grove", "GroveCloud", "GroveMasks", "grove", "scene"]
 
 
 class GroveCloud(NamedTuple):
-    """Points on a grove as a scanner sees it; ``axis`` and ``organ`` are rows of the tables of each point's own plant."""
+    """Points on a grove as a scanner measures them; ``axis`` and ``organ`` are rows of the tables of each point's own plant."""
 
     points: "np.ndarray"
     """(n, 3) float64: metres, +y up."""
@@ -43,7 +43,7 @@ class GroveCloud(NamedTuple):
     order: "np.ndarray"
     """(n,) int32: branching order of the axis, 0 for the trunk."""
     station: "np.ndarray"
-    """(n,) uint8: from which place of the scanner it was seen."""
+    """(n,) uint8: place of the scanner from which it was measured."""
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
     tree: "np.ndarray"
@@ -56,12 +56,12 @@ class GroveCloud(NamedTuple):
         save_cloud(self._asdict(), path)
 
     def to_bytes(self, extension: str = "npz") -> bytes:
-        """The file of a format: see ``Cloud.to_bytes``."""
+        """Returns the file of a format: see ``Cloud.to_bytes``."""
         return cloud_bytes(self._asdict(), extension)
 
 
 class GroveMasks(NamedTuple):
-    """What each pixel of a picture of a grove shows; ``axis`` and ``organ`` are rows of the tables of the pixel's own plant."""
+    """Labels of each pixel of a picture of a grove; ``axis`` and ``organ`` are rows of the tables of the pixel's own plant."""
 
     part: "np.ndarray"
     """(height, width) int32: row of ``burgeon.PARTS``; -1 for nothing."""
@@ -80,7 +80,7 @@ class GroveMasks(NamedTuple):
 
 
 class Grove:
-    """Plants and the places at which copies of them stand. Nothing changes it."""
+    """Plants and the places of their copies. A grove never changes."""
 
     __slots__ = ("_known", "_raw", "places", "plants", "seed", "site")
 
@@ -90,7 +90,7 @@ class Grove:
     """Columns, a row a tree: ``position`` (n, 3) metres, ``yaw_deg``, ``scale``, ``plant`` (row of ``plants``)."""
 
     site: "Optional[Dict[str, Any]]"
-    """What they stand on, as it was asked for; None for nothing."""
+    """The ground, as requested; None for nothing."""
 
     def __init__(
         self,
@@ -99,9 +99,9 @@ class Grove:
         seed: int = 1,
         site: "Optional[Mapping[str, Any]]" = None,
     ) -> None:
-        """``site``: what the plants stand on: ``soil`` (metres along x and z around the origin), ``relief`` (metres from its
-        deepest hollow, at 0, to its highest clod, 0.02), ``stones`` (how many, 0), ``stone_size`` (radius of the largest,
-        metres, 0.03), ``pots`` (rows of the middle of the soil in it, its radius and its height, metres) and ``seed``.
+        """Makes a grove. ``site``: the ground: ``soil`` (metres along x and z around the origin), ``relief`` (metres from its
+        deepest hollow, at 0, to its highest clod, 0.02), ``stones`` (their number, 0), ``stone_size`` (radius of the largest,
+        metres, 0.03), ``pots`` (rows of the centre of the soil in it, its radius and its height, metres) and ``seed``.
         """
         import numpy as np
 
@@ -116,7 +116,7 @@ class Grove:
             if name not in given:
                 raise wrong(f"places has no {name!r}", f"places.{name}", "none", "a column")
             column = np.asarray(given[name])
-            # No texts, truths, times or complex numbers; rows of plants are whole.
+            # No texts, truth values, times or complex numbers; rows of plants are whole.
             if column.dtype.kind not in ("iu" if name == "plant" else "iuf") and column.size:
                 raise TypeError(f"places[{name!r}] must be {'whole ' if name == 'plant' else ''}numbers, not {column.dtype}")
             columns[name] = column.astype(kind)
@@ -150,7 +150,7 @@ class Grove:
 
     @property
     def digest(self) -> str:
-        """Its fingerprint: of its plants, and of where they stand."""
+        """Its fingerprint, from its plants and their places."""
         digest = hashlib.sha256("".join(plant.digest for plant in self.plants).encode())
         for column in self.places.values():
             digest.update(column.astype(column.dtype.newbyteorder("<")).tobytes())
@@ -159,8 +159,8 @@ class Grove:
         return digest.hexdigest()[:32]
 
     def measures(self) -> "Dict[str, Any]":
-        """What is measured of the stand: ``trees``, ``height_m`` (of the highest), ``wood_volume_m3``, ``leaf_area_m2``, and
-        of each tree ``tree``: a list of its plant's row, place and height."""
+        """Measures of the stand: ``trees``, ``height_m`` (of the highest), ``wood_volume_m3``, ``leaf_area_m2``, and for each
+        tree ``tree``: a list of its plant's row, place and height."""
         own = [plant.measures() for plant in self.plants]
         places = self.places
         trees, wood, leaves = [], 0.0, 0.0
@@ -179,7 +179,7 @@ class Grove:
 
     @property
     def model(self) -> Model:
-        """All meshes where they stand, as one model: a copy for each tree."""
+        """All meshes in their places, as one model: a copy for each tree."""
         if "model" not in self._known:
             self._known["model"] = Model(self._raw.model(self.name))
         return self._known["model"]
@@ -192,12 +192,12 @@ class Grove:
         noise: float = 0.0,
         seed: "int | None" = None,
     ) -> GroveCloud:
-        """The grove as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
+        """Scans the grove from around it: trees hide one another. See ``Plant.cloud``."""
         columns = seen(self, points, stations, elevation, noise, seed)
         return GroveCloud(**columns, instance=self._instance(columns["tree"], columns["axis"], columns["organ"]))
 
     def _instance(self, tree: "np.ndarray", axis: "np.ndarray", organ: "np.ndarray") -> "np.ndarray":
-        """Numbers of instances (``burgeon.labels``) of rows of the tables of each one's own plant."""
+        """Returns numbers of instances (``burgeon.labels``) for rows of the tables of each one's own plant."""
         import numpy as np
 
         axes = np.array([len(plant.axes) for plant in self.plants])
@@ -211,15 +211,16 @@ class Grove:
         return np.where((tree >= 0) & ((organ >= 0) | (axis >= 0)), numbers, 0).astype(np.int32)
 
     def light(self, **how: "Unpack[Lighting]") -> Light:
-        """What each axis and organ absorbs: plants shade one another, soil and pots throw no shade. See ``Plant.light``."""
+        """Computes the light that each axis and organ absorbs: plants shade one another, soil and pots cast no shade. See
+        ``Plant.light``."""
         return lit(self._raw, **how)
 
     def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
-        """A picture: see ``Model.render``."""
+        """Renders a picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
     def masks(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> GroveMasks:
-        """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ, depth, and which tree."""
+        """Returns the labels of each pixel of ``render(size, **how)`` at its centre: part, axis, organ, depth, and tree."""
         import numpy as np
 
         of_plants = [plant.labels() for plant in self.plants]
@@ -242,7 +243,7 @@ class Grove:
         return self.model._repr_png_()
 
     def to_bytes(self, extension: str, unit: str = "m", up: "str | None" = None) -> bytes:
-        """The file of a format of models; in ``glb`` copies share their meshes."""
+        """Returns the file of a format of models; in ``glb`` copies share their meshes."""
         extension = extension.lower().lstrip(".")
         check_axes(extension, unit, up)
         if holds(extension, "instances"):
@@ -250,7 +251,7 @@ class Grove:
         return self.model.to_bytes(extension, unit, up or "y")
 
     def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: "str | None" = None) -> None:
-        """Writes a model, whole or not at all; in ``.glb`` copies share their meshes."""
+        """Writes a model, completely or not at all; in ``.glb`` copies share their meshes."""
         folder, name = os.path.split(os.fspath(path))
         stem, dotted = os.path.splitext(name)
         extension = dotted[1:].lower()
@@ -276,12 +277,12 @@ def grove(
     budget: float = 1.0,
     **fields: Any,
 ) -> Grove:
-    """Trees all over a rectangle: each at least ``spacing`` metres from the others, turned by chance.
+    """Places trees all over a rectangle: each at least ``spacing`` metres from the others, with a random rotation.
 
-    ``species``: what ``grow`` takes, or a list of it, or species with their shares: ``{"oak": 3, "birch": 1}``; ``area``:
-    metres along x and z, 0.1 to 1000, or one for both; ``kinds``: different trees of each species, 1 to 100, of which the
-    others are copies; ``vary``: trees are up to this share smaller or larger, 0 to 0.9; ``fields``: of ``grow``, for all
-    of them. The same seed gives the same grove.
+    ``species``: a species as for ``grow``, or a list of them, or species with their shares: ``{"oak": 3, "birch": 1}``; ``area``:
+    metres along x and z, 0.1 to 1000, or one for both; ``kinds``: number of different trees of each species, 1 to 100, of which
+    the others are copies; ``vary``: trees are up to this share smaller or larger, 0 to 0.9; ``fields``: those of ``grow``, for
+    all of them. The same seed gives the same grove.
 
     Its trees grow alone. Trees that compete for space and light are one plant: ``grow("oak", roots=[...])``.
     """
@@ -301,7 +302,7 @@ def grove(
     rows: "Dict[Tuple[int, int], int]" = {}
     chosen = []
     for k in range(len(found)):
-        # Of all that Python draws, only `random()` of a seed in text is the same in every version.
+        # Of all random functions of Python, only `random()` with a text as seed is the same in every version.
         chance = random.Random(f"{seed}:{k}")
         left, which = chance.random() * total, 0
         while which + 1 < len(mixed) and left >= mixed[which][1]:
@@ -319,7 +320,7 @@ def grove(
 
 
 def _shares(species: Any) -> "List[Tuple[Species, float]]":
-    """Species, and how often each is chosen."""
+    """Returns species, and the share of each."""
     from . import presets
 
     trees = presets()[0]
@@ -338,7 +339,7 @@ def _shares(species: Any) -> "List[Tuple[Species, float]]":
 
 
 def _site(site: "Mapping[str, Any]", seed: int) -> "Dict[str, Any]":
-    """What plants stand on, as the core takes it."""
+    """Returns the ground of plants for the core."""
     given = table("site", site)
     keys("site", given, ("soil", "relief", "stones", "stone_size", "pots", "seed"))
     if "soil" not in given:
@@ -365,13 +366,13 @@ def _site(site: "Mapping[str, Any]", seed: int) -> "Dict[str, Any]":
 
 
 LAYOUTS = ("rows", "pots", "plot")
-"""How plants of a scene stand."""
+"""Layouts of a scene."""
 AROUND = 2.0
-"""How far soil goes beyond the plants, of their spacing."""
+"""Margin of the soil around the plants, as a multiple of their spacing."""
 FILLED = 0.9
-"""The share of a pot's height that its soil fills: as the core has it."""
+"""Share of a pot's height that its soil fills, as in the core."""
 JITTER = 0.12
-"""How far plants of rows stand from their places at most, of their spacing."""
+"""Greatest distance of plants in rows from their places, as a share of their spacing."""
 
 
 def scene(
@@ -390,13 +391,13 @@ def scene(
     weeds: "Sequence[Plant]" = (),
     weed_count: int = 0,
 ) -> Grove:
-    """Plants on soil: in rows of a field or orchard, in pots, or by chance on a plot.
+    """Places plants on soil: in rows of a field or orchard, in pots, or at random on a plot.
 
-    ``plants``: those to choose from; ``count``: rows and plants of each row, 1 to 200 each (``plot``: their product);
-    ``spacing``: metres between rows and within a row, 0.01 to 100; ``vary``: plants are up to this share smaller or larger, 0 to
-    0.9; ``jitter``: how far they stand from their places at most, of the spacing, 0 to 0.5; ``relief``, ``stones``,
-    ``stone_size``: of the soil, see ``Grove``; ``pot``: radius and height of pots, metres; ``weeds``: plants of which
-    ``weed_count`` stand anywhere. The same seed gives the same scene.
+    ``plants``: those to choose from; ``count``: number of rows and of plants in each row, 1 to 200 each (``plot``: their
+    product); ``spacing``: metres between rows and within a row, 0.01 to 100; ``vary``: plants are up to this share smaller or
+    larger, 0 to 0.9; ``jitter``: greatest distance from their places, as a share of the spacing, 0 to 0.5; ``relief``,
+    ``stones``, ``stone_size``: those of the soil, see ``Grove``; ``pot``: radius and height of pots, metres; ``weeds``: plants of
+    which ``weed_count`` stand anywhere. The same seed gives the same scene.
     """
     chosen = [plants] if isinstance(plants, Plant) else list(plants)
     if not chosen:
@@ -416,7 +417,7 @@ def scene(
     radius, height = (number("pot", x, 0.005, 5, "m") for x in pot)
     stand: "List[Tuple[Tuple[float, float, float], float, float, int]]" = []
     for k in range(rows * columns):
-        # Of all that Python draws, only `random()` of a seed in text is the same in every version.
+        # Of all random functions of Python, only `random()` with a text as seed is the same in every version.
         chance = random.Random(f"{seed}:plant:{k}")
         place = ((k % columns + 0.5) * within - 0.5 * width, (k // columns + 0.5) * between - 0.5 * depth)
         if layout == "plot":
@@ -441,7 +442,7 @@ def scene(
 def _stood(
     chance: random.Random, place: "Tuple[float, ...]", level: float, vary: float, kinds: int
 ) -> "Tuple[Tuple[float, float, float], float, float, int]":
-    """Where a plant of a scene stands, how it is turned and how large it is, and which it is."""
+    """Returns place, rotation, size and row of a plant of a scene."""
     row = min(int(chance.random() * kinds), kinds - 1)
     yaw, scale = 360.0 * chance.random(), 1.0 + vary * (2 * chance.random() - 1)
     return (place[0], level, place[1]), yaw, scale, row

@@ -9,13 +9,13 @@ if TYPE_CHECKING:
     import numpy as np
 
 GRID_M = 0.0001
-"""Coordinates are multiples of it."""
+"""Step of coordinates, metres."""
 LABELS = ("part", "axis", "organ", "order", "distance", "tree", "instance")
-"""Columns that become dimensions of their own."""
+"""Columns that become separate dimensions."""
 
 
 def las(cloud: "Mapping[str, np.ndarray]", packed: bool) -> bytes:
-    """LAS 1.4, point format 6, metres, +z up; the station is the point source. The same cloud gives the same bytes."""
+    """Returns LAS 1.4, point format 6, metres, +z up; the station is the point source. The same cloud gives the same bytes."""
     import datetime
 
     import numpy as np
@@ -26,7 +26,7 @@ def las(cloud: "Mapping[str, np.ndarray]", packed: bool) -> bytes:
         raise ImportError("LAS and LAZ need laspy: pip install 'laspy[lazrs]>=2.5'") from error
     points = np.asarray(cloud["points"])
     header = laspy.LasHeader(version="1.4", point_format=6)
-    # Nothing that differs from day to day.
+    # The date is fixed, because the bytes must not depend on the day.
     header.creation_date = datetime.date(2000, 1, 1)
     header.generating_software = "burgeon"
     placed = np.column_stack([points[:, 0], -points[:, 2], points[:, 1]])

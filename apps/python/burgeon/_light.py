@@ -1,4 +1,4 @@
-"""Light on plants: what each axis and organ absorbs (``burgeon light``)."""
+"""Light on plants: absorption of each axis and organ (``burgeon light``)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from typing_extensions import Literal, TypedDict
 
     class Lighting(TypedDict, total=False):
-        """Where light comes from, and what it falls on."""
+        """Sources of light, and reflectances of surfaces."""
 
         sky: Literal["overcast", "uniform", "clear"]
         diffuse: float
@@ -38,9 +38,9 @@ if TYPE_CHECKING:
 __all__ = ["Light", "lit"]
 
 SKIES = ("overcast", "uniform", "clear")
-"""How the light of a sky is distributed."""
+"""Distributions of the light of a sky."""
 ROWS_MOST = 2000
-"""Rows of a measured sky."""
+"""Most rows of a measured sky."""
 
 Day = Union[str, datetime.date, Sequence[int]]
 
@@ -49,42 +49,42 @@ class Light(NamedTuple):
     """Light on plants: a row for each axis and organ with a surface, as in the table of ``burgeon light``."""
 
     plant: "np.ndarray"
-    """(n,) uint32: which plant, from 0: row of ``grove.places``."""
+    """(n,) uint32: number of the plant, from 0: row of ``grove.places``."""
     part: "np.ndarray"
     """(n,) uint8: row of ``burgeon.PARTS``."""
     row: "np.ndarray"
-    """(n,) int32: row of the plant's ``organs`` or, of an axis, of its ``axes``; -1 for what is neither."""
+    """(n,) int32: row of the plant's ``organs`` or, for an axis, of its ``axes``; -1 for neither."""
     axis: "np.ndarray"
-    """(n,) int32: the axis that it is or that bears it; -1 for none."""
+    """(n,) int32: the axis itself or the one that bears the organ; -1 for none."""
     order: "np.ndarray"
     """(n,) uint32: branching order of that axis."""
     area: "np.ndarray"
     """(n,) float64: one side of its mesh, m2."""
     height: "np.ndarray"
-    """(n,) float64: of its middle, metres."""
+    """(n,) float64: height of its centre, metres."""
     incident: "np.ndarray"
-    """(n,) float64: what falls on both sides, for each square metre of one side: W/m2, of a day MJ/m2."""
+    """(n,) float64: light on both sides, for each square metre of one side: W/m2, for a day MJ/m2."""
     absorbed: "np.ndarray"
-    """(n,) float64: what of it stays."""
+    """(n,) float64: absorbed part of it."""
     fapar: "np.ndarray"
-    """(n,) float64: ``absorbed`` over what a horizontal surface above the plants gets."""
+    """(n,) float64: ``absorbed`` over the light on a horizontal surface above the plants."""
     sunlit: "np.ndarray"
     """(n,) float64: the share of its area that is in the sun; NaN without a sun."""
     lines: "np.ndarray"
-    """(n,) float64: how many lines of light cross it: figures are off by about one over the root of it."""
+    """(n,) float64: number of lines of light that cross it: the relative error of figures is about one over its square root."""
     figures: "Dict[str, Any]"
-    """Of all: ``unit``, ``incoming_per_m2``, ``absorbed``, ``leaf_absorbed``, ``leaf_area_m2``, ``sunlit``; in a stand that
-    repeats itself also ``fapar``, ``leaf_area_index``, ``extinction``, ``balance``; None for what does not apply."""
+    """Totals: ``unit``, ``incoming_per_m2``, ``absorbed``, ``leaf_absorbed``, ``leaf_area_m2``, ``sunlit``; for a stand that
+    repeats itself also ``fapar``, ``leaf_area_index``, ``extinction``, ``balance``; None for totals that do not apply."""
     warnings: "List[str]"
-    """What a person should know of it."""
+    """Warnings of the computation."""
 
     def to_dict(self) -> "Dict[str, np.ndarray]":
-        """All columns by name, for ``pandas.DataFrame`` and the like."""
+        """Returns all columns by name, for ``pandas.DataFrame`` and the like."""
         return {name: getattr(self, name) for name in COLUMNS}
 
 
 COLUMNS = Light._fields[:-2]
-"""What there is a number of for each axis and organ."""
+"""Columns with a number for each axis and organ."""
 
 
 def _pair(name: str, given: Any, count: int, what: str) -> "List[float]":
@@ -162,7 +162,7 @@ def lit(
     bounces: "Optional[int]" = None,
     rays: "Optional[int]" = None,
 ) -> Light:
-    """Light on a plant or grove of the core: see ``Plant.light``."""
+    """Computes light on a plant or grove of the core: see ``Plant.light``."""
     daily = flag("daily", daily)
     value: Any
     if (place is None) != (date is None):

@@ -1,4 +1,4 @@
-"""NumPy's ``.npz`` with the same bytes for the same arrays: no times of writing in it."""
+"""NumPy's ``.npz`` without times of writing: the same arrays give the same bytes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def npz(arrays: "Mapping[str, np.ndarray]") -> bytes:
-    """A compressed ``.npz`` file of arrays."""
+    """Returns a compressed ``.npz`` file of arrays."""
     import numpy as np
 
     out = io.BytesIO()

@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     import numpy as np
 
 MOST_GROUPS = 7
-"""Groups of five bits that a run length of a 32-bit picture can take."""
+"""Most groups of five bits of a run length in a 32-bit picture."""
 
 
 class Regions(NamedTuple):
-    """Of each number above 0 in a picture of numbers, in ascending order."""
+    """Regions of a picture of numbers: one for each number above 0, in ascending order."""
 
     number: "np.ndarray"
     """(n,) int64."""
@@ -23,7 +23,7 @@ class Regions(NamedTuple):
 
 
 def regions(numbers: "np.ndarray") -> Regions:
-    """What regions a picture (height, width) of whole numbers has; 0 and less is none."""
+    """Returns the regions of a picture (height, width) of whole numbers; 0 and less is none."""
     import numpy as np
 
     rows, columns = np.nonzero(numbers > 0)
@@ -39,7 +39,7 @@ def regions(numbers: "np.ndarray") -> Regions:
 
 
 def run_lengths(numbers: "np.ndarray") -> "Dict[int, np.ndarray]":
-    """Of each region its run lengths as COCO has them: down the columns, first of what is outside, in turn."""
+    """Returns the run lengths of each region in the form of COCO: down the columns, alternately outside and inside."""
     import numpy as np
 
     flat = np.ascontiguousarray(numbers.T).reshape(-1)
@@ -62,7 +62,7 @@ def run_lengths(numbers: "np.ndarray") -> "Dict[int, np.ndarray]":
 
 
 def packed(counts: "np.ndarray") -> str:
-    """Run lengths as the text of COCO: each as its difference from the last but one, five bits a letter."""
+    """Encodes run lengths as the text of COCO: each as its difference from the last but one, five bits a letter."""
     import numpy as np
 
     left = np.array(counts, np.int64)
@@ -81,7 +81,7 @@ def packed(counts: "np.ndarray") -> str:
 
 
 def unpacked(text: str) -> "np.ndarray":
-    """The run lengths that ``packed`` told."""
+    """Decodes the run lengths of ``packed``."""
     import numpy as np
 
     counts: "List[int]" = []
@@ -99,7 +99,7 @@ def unpacked(text: str) -> "np.ndarray":
 
 
 def mask_of(counts: "np.ndarray", height: int, width: int) -> "np.ndarray":
-    """(height, width) bool: what run lengths stand for."""
+    """Returns the mask of run lengths, (height, width) bool."""
     import numpy as np
 
     inside = np.arange(len(counts)) % 2 == 1
@@ -109,13 +109,13 @@ def mask_of(counts: "np.ndarray", height: int, width: int) -> "np.ndarray":
 STEP = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """Right, down, left, up: columns and rows."""
 TURNS = (1, 0, 3)
-"""To the right, straight on, to the left: so that pixels that touch at a corner alone are rings of their own."""
+"""To the right, straight on, to the left: so that pixels that touch only at a corner are separate rings."""
 
 
 def outlines(numbers: "np.ndarray") -> "Dict[int, List[np.ndarray]]":
-    """Of each region its rings (n, 2) of corners (x, y) along the edges of pixels, x from the left, y from the top.
+    """Returns the rings (n, 2) of each region: corners (x, y) along the edges of pixels, x from the left, y from the top.
 
-    Outer rings go clockwise as the picture is seen, rings of holes counter-clockwise: to fill them gives the very region.
+    Outer rings are clockwise in the picture, rings of holes counter-clockwise: filling them gives exactly the region.
     """
     import numpy as np
 
@@ -126,7 +126,7 @@ def outlines(numbers: "np.ndarray") -> "Dict[int, List[np.ndarray]]":
     beside = (framed[:-2, 1:-1], framed[1:-1, 2:], framed[2:, 1:-1], framed[1:-1, :-2])
     corner = ((0, 0), (1, 0), (1, 1), (0, 1))
     parts = []
-    # Each side of a pixel that its region ends at, clockwise around the pixel.
+    # Each side of a pixel at the edge of its region, clockwise around the pixel.
     for way, (there, (dx, dy)) in enumerate(zip(beside, corner)):
         rows, columns = np.nonzero((own > 0) & (there != own))
         place = (rows + dy) * (width + 1) + columns + dx
@@ -172,7 +172,8 @@ def _rings(edges: "np.ndarray", following: "np.ndarray", bent: "np.ndarray", wid
 
 
 def joined(rings: "List[np.ndarray]") -> "np.ndarray":
-    """One ring (n, 2) of several, for formats of one polygon: bridges there and back join the others to the longest."""
+    """Joins several rings to one (n, 2), for formats with a single polygon: bridges there and back join the others to the
+    longest."""
     import numpy as np
 
     longest = max(range(len(rings)), key=lambda k: len(rings[k]))

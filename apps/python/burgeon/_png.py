@@ -1,4 +1,4 @@
-"""Pictures of numbers as PNG: grey of 8 bits and colours of three bytes, which many readers of labels ask for."""
+"""Pictures of numbers as PNG: grey of 8 bits and colours of three bytes, for readers of labels that need these."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ if TYPE_CHECKING:
     import numpy as np
 
 GREY, COLOUR = 0, 2
-"""Kinds of PNG."""
+"""Colour types of PNG."""
 
 
 def png_of(pixels: "np.ndarray") -> bytes:
-    """The file of (height, width) or (height, width, 3) uint8, without loss."""
+    """Returns the lossless file of (height, width) or (height, width, 3) uint8."""
     import numpy as np
 
     height, width = pixels.shape[:2]

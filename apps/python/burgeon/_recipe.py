@@ -1,4 +1,4 @@
-"""What a plant is made of: enough to make it again, the same to the bit. Pickles hold this and no meshes."""
+"""The recipe of a plant: enough to make it again, with the same bits. Pickles hold this and no meshes."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from . import _burgeon
 
 
 class Recipe(NamedTuple):
-    """A call of the core, or of a method of what another recipe makes."""
+    """A call of the core, or of a method of another recipe's result."""
 
     function: str
     arguments: "Tuple[Any, ...]"
     before: "Optional[Recipe]" = None
 
     def make(self) -> Any:
-        """What comes out."""
+        """Returns the result."""
         of = _burgeon if self.before is None else self.before.make()
         return self.of(of)
 
     def of(self, there: Any) -> Any:
-        """What comes out where what is before was made already."""
+        """Returns the result, if that of the recipe before is already made."""
         made = getattr(there, self.function)(*[_raw(argument) for argument in self.arguments])
         return made[0] if isinstance(made, list) else made
 
 
 def recipe(function: str, *arguments: Any, before: "Optional[Recipe]" = None) -> Recipe:
-    """A recipe that no later change of a list or dict of the caller's reaches."""
+    """Returns a recipe that later changes of the caller's lists and dicts do not affect."""
     return Recipe(function, copy.deepcopy(arguments), before)
 
 

@@ -1,4 +1,4 @@
-"""A 3-D view as HTML that needs nothing else: the meshes and the Studio's stage are in it."""
+"""A self-contained 3-D view as HTML: it includes the meshes and the Studio's stage."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class _Part(Protocol):
-    """A part of a model: ``burgeon.Part``, which stands above this module."""
+    """A part of a model: ``burgeon.Part``, which this module must not import."""
 
     name: str
     material: "Dict[str, Any]"
@@ -56,17 +56,17 @@ class _Model(Protocol):
 
 
 MOST_TRIANGLES = 120_000
-"""What a notebook keeps well: 5 MB at most."""
+"""Most triangles of a view: a notebook should not exceed 5 MB."""
 
 MOST_PIXELS = 512
-"""Of a side of a texture, and half of that of its relief: a view of a notebook shows no more."""
+"""Most pixels along a side of a texture, and twice those of its relief: a view in a notebook shows no more."""
 
 PROGRAM = Path(__file__).with_name("_alone.js.gz")
-"""The stage as one script (apps/studio-web/src/alone), which a wheel has."""
+"""The stage as one script (apps/studio-web/src/alone), which a wheel includes."""
 
 
 def page(model: "_Model", height: int) -> str:
-    """An ``iframe`` with the view: nothing of it meets what else is on the page."""
+    """Returns an ``iframe`` with the view, isolated from the rest of the page."""
     if not 64 <= height <= 4096:
         raise beyond("height", height, "64 to 4096 pixels")
     program, name = _program(), html.escape(model.name)
@@ -77,7 +77,7 @@ def page(model: "_Model", height: int) -> str:
 
 
 def can_show() -> bool:
-    """Whether the stage is there: it is in a wheel, not in the sources."""
+    """Returns whether the stage is there: a wheel includes it, the sources do not."""
     return PROGRAM.exists()
 
 
@@ -92,13 +92,13 @@ def _program() -> str:
 
 
 class _Bytes:
-    """Numbers one after another, each array where its type may begin."""
+    """Bytes of several arrays, each aligned for its type."""
 
     def __init__(self) -> None:
         self.all = bytearray()
 
     def put(self, values: Any, kind: str) -> List[int]:
-        """Where they begin, and how many they are."""
+        """Appends values; returns their start and count."""
         import numpy as np
 
         array = np.ascontiguousarray(values, kind)
@@ -109,7 +109,7 @@ class _Bytes:
 
 
 class _Textures:
-    """Those of all materials, each once."""
+    """Textures of all materials, each once."""
 
     def __init__(self, to: _Bytes) -> None:
         self.to = to
@@ -130,7 +130,8 @@ class _Textures:
 
 
 def packed(model: "_Model") -> bytes:
-    """What the stage shows, as ``Contents`` in apps/studio-web/src/alone says: its length, JSON, numbers; in gzip."""
+    """Returns the contents of the stage, as ``Contents`` in apps/studio-web/src/alone describes them: length, JSON, numbers; in
+    gzip."""
     import numpy as np
 
     shown = [p for p in model.parts if len(p.faces)]
@@ -144,7 +145,7 @@ def packed(model: "_Model") -> bytes:
         "parts": [_part(p, row, to) for row, p in enumerate(shown)],
         "textures": textures.list,
     }
-    # Where numbers begin depends on the length of what says it: they are counted from where they begin.
+    # Offsets count from the start of the numbers, because that depends on the length of the JSON.
     text = json.dumps(contents).encode()
     text += b" " * (-len(text) % 4)
     return gzip.compress(struct.pack("<I", len(text)) + text + bytes(to.all), 6, mtime=0)

@@ -1,4 +1,4 @@
-"""Independent jobs: here, on processes of this machine, or on those of a Ray cluster."""
+"""Independent jobs: in this process, on processes of this machine, or on those of a Ray cluster."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import sys
 from typing import Any, Callable, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 TRIES = 5
-"""How often a job is tried whose worker was killed."""
+"""Most attempts at a job whose worker was killed."""
 
 STOPPED = 130
-"""What a process ends with after Ctrl-C."""
+"""Exit status of a process after Ctrl-C."""
 
 
 def results(
@@ -22,10 +22,10 @@ def results(
     workers: "Optional[int]" = None,
     ray: bool = False,
 ) -> "Iterator[Any]":
-    """What ``task(*common, item)`` gives for each item, in the order in which they are done.
+    """Yields ``task(*common, item)`` for each item, in the order of completion.
 
-    ``task``: a function of a module, which may run anywhere; ``workers``: processes (1: this one; default as many as the
-    machine has cores); ``ray``: tasks of the Ray cluster that ``ray.init`` has joined, or of one on this machine. A job whose
+    ``task``: a function of a module, which may run anywhere; ``workers``: number of processes (1: this one; default as many as
+    the machine has cores); ``ray``: tasks of the Ray cluster that ``ray.init`` has joined, or of one on this machine. A job whose
     worker was killed is done again.
     """
     jobs = list(items)
@@ -40,8 +40,8 @@ def results(
 
 @contextlib.contextmanager
 def _without_main() -> "Iterator[None]":
-    """New processes do not run the program again that asks for them: they need nothing of it, and one without the guard
-    ``if __name__ == "__main__"`` would start them over and over."""
+    """Keeps new processes from running the main program again: they need nothing of it, and one without the guard ``if __name__
+    == "__main__"`` would start them over and over."""
     import types
 
     main = sys.modules["__main__"]
@@ -53,7 +53,7 @@ def _without_main() -> "Iterator[None]":
 
 
 def _alone(task: "Callable[..., Any]", *arguments: Any) -> Any:
-    """A job in a process of its own: there are as many of these as cores, so each computes with one thread."""
+    """Does a job in its own process: there are as many of these as cores, so each computes with one thread."""
     from . import set_threads
 
     set_threads(1)
@@ -61,15 +61,15 @@ def _alone(task: "Callable[..., Any]", *arguments: Any) -> Any:
 
 
 def _begin_worker() -> None:
-    """Ctrl-C is of what does a job; a process that waits for one ends with its pool."""
+    """Makes Ctrl-C stop only a process with a job; one that waits for a job ends with its pool."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _in_pool(task: "Callable[..., Any]", common: "Tuple[Any, ...]", item: Any) -> Any:
-    """One job in a process of a pool. After Ctrl-C, and with its drafts gone, the process ends without a word: the next job
-    may be waiting for it already."""
+    """Does one job in a process of a pool. After Ctrl-C, with its drafts deleted, the process ends silently: the next job may
+    already wait for it."""
     import signal
 
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -90,7 +90,7 @@ def _with_processes(
     from concurrent.futures.process import BrokenProcessPool
 
     left, tries, others = list(range(len(items))), 0, set(multiprocessing.active_children())
-    # Processes that are forked off would share locks of threads that they do not have.
+    # Forked processes would share locks of threads that they do not have.
     context = multiprocessing.get_context("spawn")
     while left:
         done, failed = set(), False
@@ -108,7 +108,7 @@ def _with_processes(
                     done.add(jobs[job])
                     yield made
             except BaseException:
-                # A terminal tells all processes of Ctrl-C; whoever stops this one alone means them, too.
+                # A terminal sends Ctrl-C to all processes; a signal to this process alone is meant for them, too.
                 for worker in set(multiprocessing.active_children()) - others:
                     if os.name == "posix" and worker.pid is not None:
                         with contextlib.suppress(ProcessLookupError):
@@ -131,7 +131,7 @@ def _with_ray(
         raise ImportError("ray=True needs Ray: pip install 'ray>=2' (or leave ray out: workers=N)") from error
     if not ray.is_initialized():
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
-    # A worker that is killed is replaced, and its job done again. Its process and the dashboard name the job.
+    # Ray replaces a worker that is killed, and does its job again. Its process and the dashboard show the name of the job.
     remote = ray.remote(num_cpus=1, max_retries=TRIES)(_alone).options(name=task.__name__)
     # Sent once, not with each job.
     shared = [ray.put(value) for value in common]

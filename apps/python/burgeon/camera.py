@@ -1,4 +1,4 @@
-"""Cameras by their place and intrinsics, as computer vision has them: x right, y down, z along the view."""
+"""Cameras by their place and intrinsics, in the convention of computer vision: x right, y down, z along the view."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 __all__ = ["Camera"]
 
 MOST_PIXELS = 8192
-"""A picture has no more along a side."""
+"""Most pixels along a side of a picture."""
 FARTHEST_M = 1e6
-"""A camera stands no farther from the origin."""
+"""Greatest distance of a camera from the origin."""
 PLACES = 9
-"""Decimals that are kept of what comes out of angles: the same numbers on machines whose sines differ in the last bit."""
+"""Decimals kept of results of angles, so that machines whose sines differ in the last bit give the same numbers."""
 ROOM = 1.04
-"""How much farther than it must a camera stands that is put around a plant."""
+"""Distance of a camera around a plant, as a multiple of the least possible."""
 
 
 class Camera:
-    """A pinhole camera without distortion. Nothing changes it.
+    """A pinhole camera without distortion. A camera never changes.
 
-    A point at (x, y, z) metres of the camera is seen at pixel (``fx * x / z + cx``, ``fy * y / z + cy``); (0, 0) is the upper
-    left corner of the picture and (0.5, 0.5) the middle of its first pixel.
+    A point at (x, y, z) metres in the camera's frame appears at pixel (``fx * x / z + cx``, ``fy * y / z + cy``); (0, 0) is the
+    upper left corner of the picture and (0.5, 0.5) the centre of its first pixel.
 
     >>> eye = Camera((640, 480), 800, position=(0, 1, 3), target=(0, 1, 0))
     >>> eye.project([[0, 1, 0], [0.3, 1, 0]]).tolist()
@@ -52,7 +52,7 @@ class Camera:
     cy: float
     """Principal point from the upper edge, pixels."""
     position: "Tuple[float, float, float]"
-    """Where the eye is, metres, +y up."""
+    """Position of the eye, metres, +y up."""
 
     def __init__(
         self,
@@ -65,9 +65,9 @@ class Camera:
         up: "Sequence[float]" = (0.0, 1.0, 0.0),
         rotation: "Optional[Any]" = None,
     ) -> None:
-        """``size``: pixels across and down, 1 to 8192; ``focal``: fx and fy in pixels, or one for both; ``principal``: cx and
-        cy in pixels (the middle); ``position``: metres; ``target``: a point that the principal point shows, with ``up`` upwards;
-        or ``rotation``: (3, 3), the rows of which are the camera's right, down and forward in the world.
+        """Makes a camera. ``size``: pixels across and down, 1 to 8192; ``focal``: fx and fy in pixels, or one for both;
+        ``principal``: cx and cy in pixels (the centre); ``position``: metres; ``target``: a point that the principal point shows,
+        with ``up`` upwards; or ``rotation``: (3, 3), with rows for the camera's right, down and forward in the world.
         """
         sides = (size, size) if hasattr(size, "__index__") else size
         if isinstance(sides, (str, bytes)) or not hasattr(sides, "__len__") or len(sides) != 2:
@@ -96,7 +96,7 @@ class Camera:
         size: "Tuple[int, int] | int" = (640, 480),
         field_of_view: float = 40.0,
     ) -> "Camera":
-        """A camera from which all of a plant, grove or model is seen.
+        """Returns a camera that sees all of a plant, grove or model.
 
         ``azimuth``: degrees around it, 0 from the front (+z), 90 from the right (+x); ``elevation``: degrees above the horizon,
         -89 to 89; ``field_of_view``: degrees that the shorter side of the picture spans, 1 to 120.
@@ -117,7 +117,7 @@ class Camera:
         focal = round(0.5 * min(width, height) / math.tan(half), PLACES)
         right, down, forward = _towards(way, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
         x, y, z = (_along(points - middle, axis) for axis in (right, down, forward))
-        # So far that each point is within the picture, and before the camera.
+        # Far enough for each point to be within the picture, and in front of the camera.
         needed = np.maximum(np.abs(x) * (2 * focal / width), np.abs(y) * (2 * focal / height)) - z
         away = max(ROOM * float(needed.max()), ROOM * float(-z.min()), 1e-6)
         position = [round(m + away * w, PLACES) for m, w in zip(middle, way)]
@@ -137,7 +137,7 @@ class Camera:
 
     @property
     def pose(self) -> "np.ndarray":
-        """(4, 4) float64: takes points of the world to the camera (x right, y down, z forward)."""
+        """(4, 4) float64: maps points of the world to the camera's frame (x right, y down, z forward)."""
         import numpy as np
 
         pose = np.eye(4)
@@ -146,9 +146,10 @@ class Camera:
         return pose
 
     def project(self, points: Any) -> "np.ndarray":
-        """(n, 3) float64 of points (n, 3) in metres: pixels from the left and from the top, and metres along the view.
+        """Projects points (n, 3) in metres; returns (n, 3) float64: pixels from the left and from the top, and metres along the
+        view.
 
-        Points that are not before the camera have no pixel: NaN.
+        Points that are not in front of the camera have no pixel: NaN.
         """
         import numpy as np
 
@@ -160,7 +161,7 @@ class Camera:
         return np.column_stack([column, row, z])
 
     def depth_along_view(self, distance: Any) -> "np.ndarray":
-        """Distances from the eye (height, width), as masks have them, as metres along the view: what depth cameras give."""
+        """Converts distances from the eye (height, width), as in masks, to metres along the view, as depth cameras give."""
         import numpy as np
 
         x = (np.arange(self.width) + 0.5 - self.cx) / self.fx
@@ -169,20 +170,21 @@ class Camera:
         return (np.asarray(distance, np.float64) / longer).astype(np.float32)
 
     def to_dict(self) -> "Dict[str, Any]":
-        """For files: size, ``fx``, ``fy``, ``cx``, ``cy``, ``position`` and ``rotation`` (right, down, forward)."""
+        """Returns the camera for files: size, ``fx``, ``fy``, ``cx``, ``cy``, ``position`` and ``rotation`` (right, down,
+        forward)."""
         intrinsics = {name: getattr(self, name) for name in ("width", "height", "fx", "fy", "cx", "cy")}
         rotation = [list(axis) for axis in (self._right, self._down, self._forward)]
         return {**intrinsics, "position": list(self.position), "rotation": rotation}
 
     @classmethod
     def of_dict(cls, given: "Dict[str, Any]") -> "Camera":
-        """The camera that ``to_dict`` told."""
+        """Returns the camera of a ``to_dict``."""
         size, focal = (given["width"], given["height"]), (given["fx"], given["fy"])
         principal = (given["cx"], given["cy"])
         return cls(size, focal, principal, position=given["position"], rotation=given["rotation"])
 
     def _eye(self) -> "Dict[str, Any]":
-        """As the core takes it."""
+        """Returns the camera for the core."""
         return {
             "position": list(self.position),
             "right": list(self._right),
@@ -206,7 +208,7 @@ Axis = Tuple[float, float, float]
 
 
 def _seen(what: Any) -> "np.ndarray":
-    """The corners (n, 3) of what a camera is put around; of a grove those of its plants, not of what they stand on."""
+    """Returns the corners (n, 3) of the subject of a camera; for a grove those of its plants, not of their ground."""
     import numpy as np
 
     model = getattr(what, "model", what)
@@ -217,7 +219,7 @@ def _seen(what: Any) -> "np.ndarray":
 
 
 def _along(points: "np.ndarray", axis: Axis) -> "np.ndarray":
-    # Not as a product of matrices, whose last bits differ between machines.
+    # Not a product of matrices, because its last bits differ between machines.
     return points[:, 0] * axis[0] + points[:, 1] * axis[1] + points[:, 2] * axis[2]
 
 

@@ -3,10 +3,10 @@
 >>> import burgeon as bg
 >>> bg.dataset.generate("birch", 1000, "birches", formats=("cloud", "mtg"), vary={"age": (8, 30)})  # doctest: +SKIP
 
-A data set is a folder: ``shard-00000.tar`` and so on (WebDataset: the files of a plant share a stem), a ``.json`` beside
-each, ``manifest.json`` with the SHA-256 of all, ``plants.csv`` with seed and digest of each plant, ``croissant.json`` for
-tools that read data sets, ``datasheet.md`` for people. The same recipe gives
-the same bytes wherever it runs. A run that was stopped is taken up again: only shards that are missing are made.
+A data set is a folder: ``shard-00000.tar`` and so on (WebDataset: the files of a plant share a stem), a ``.json`` next to each,
+``manifest.json`` with the SHA-256 of all, ``plants.csv`` with seed and digest of each plant, ``croissant.json`` for tools that
+read data sets, ``datasheet.md`` for people. The same recipe gives the same bytes wherever it runs. An interrupted run can be
+continued: only missing shards are made.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ __all__ = ["FORMATS", "export", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
 MAKERS = ("grow", "bloom", "leaf", "grove", "scene")
-"""What makes the plants; a plant of ``grove`` is a tile of trees, one of ``scene`` a few plants on soil or in pots."""
+"""Makers of plants; a plant of ``grove`` is a tile of trees, one of ``scene`` a few plants on soil or in pots."""
 FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture", "labels")
-"""Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
-would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``), pictures by calibrated cameras with all
-labels (``.view0.png``, ``.view0.npz``, ``.view0.json``; docs/datasets.md)."""
+"""Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), line drawing
+(``.svg``), picture with masks and depth (``.png``, ``.masks.npz``), pictures by calibrated cameras with all labels
+(``.view0.png``, ``.view0.npz``, ``.view0.json``; docs/datasets.md)."""
 
 
 GROVES = ("glb", "cloud", "laz", "picture", "labels")
-"""What is written of tiles of trees and of scenes; their clouds and masks also say which ``tree``."""
+"""Formats for tiles of trees and for scenes; their clouds and masks also give the ``tree``."""
 
 
 def plant_seed(seed: int, index: int) -> int:
-    """The seed of a plant of a data set: by its number, whichever shard, process or machine makes it."""
+    """Returns the seed of a plant of a data set: by its number, whichever shard, process or machine makes it."""
     return int.from_bytes(hashlib.sha256(f"{RECIPE}:{seed}:{index}".encode()).digest()[:8], "little")
 
 
@@ -66,17 +66,16 @@ def generate(
 ) -> "Dict[str, Any]":
     """Makes ``n`` plants of different seeds; returns the manifest.
 
-    ``spec``, ``maker``: what ``burgeon.grow``, ``bloom``, ``leaf`` or ``grove`` take (a preset, a TOML file, a dict);
-    ``fields``: their keyword arguments, the same for all plants (``detail=0.3``, ``leaves={...}``);
-    ``vary``: arguments that differ: ``{"age": (8, 30)}`` is uniform between the two (whole if both are), a list is a
-    choice; ``cloud``: arguments of ``Plant.cloud``; ``picture``: of ``Plant.render``; ``views``: how the
-    pictures with labels are taken (``dataset.VIEWS``); ``formats``: of ``FORMATS``;
-    ``shard``: plants of each file; ``workers``: processes (1: this one; default as many as the machine has cores);
-    ``ray``: tasks of the Ray cluster that ``ray.init`` has joined, or of one on this machine. All its machines must see
-    the folder ``out``.
+    ``spec``, ``maker``: arguments of ``burgeon.grow``, ``bloom``, ``leaf`` or ``grove`` (a preset, a TOML file, a dict);
+    ``fields``: their keyword arguments, the same for all plants (``detail=0.3``, ``leaves={...}``); ``vary``: arguments that
+    differ: ``{"age": (8, 30)}`` is uniform between the two (whole if both are), a list is a choice; ``cloud``: arguments of
+    ``Plant.cloud``; ``picture``: those of ``Plant.render``; ``views``: settings of the pictures with labels (``dataset.VIEWS``);
+    ``formats``: some of ``FORMATS``; ``shard``: plants of each file; ``workers``: number of processes (1: this one; default as
+    many as the machine has cores); ``ray``: tasks of the Ray cluster that ``ray.init`` has joined, or of one on this machine. All
+    its machines must see the folder ``out``.
 
-    A worker that is killed is replaced. Ctrl-C, a full disk or an error leave whole shards only; the same call goes on.
-    Raises ValueError for a folder that holds another data set, and what the maker raises.
+    A killed worker is replaced. Ctrl-C, a full disk or an error leave only complete shards; the same call continues. Raises
+    ValueError for a folder that holds another data set, and the errors of the maker.
     """
     recipe = _recipe(spec, n, maker, seed, formats, fields, vary, cloud, picture, views, shard)
     out = os.path.abspath(os.fspath(out))
@@ -93,7 +92,8 @@ def generate(
 
 
 def read(out: "str | os.PathLike[str]") -> "Iterator[Dict[str, Any]]":
-    """The plants of a data set in their order: ``seed``, ``fields``, ``digest``, ``measures``, and what its formats hold.
+    """Yields the plants of a data set in their order: ``seed``, ``fields``, ``digest``, ``measures``, and the contents of its
+    formats.
 
     Clouds and masks as dicts of arrays, all else as bytes.
     """
@@ -145,7 +145,7 @@ def _recipe(
     views: "Optional[Mapping[str, Any]]",
     shard: int,
 ) -> "Dict[str, Any]":
-    """All that decides what the data set holds, checked: it goes into the manifest."""
+    """Returns all settings that determine the data set, checked: they go into the manifest."""
     from . import __version__
 
     n, shard, seed = whole("n", n, 1, 10**9), whole("shard", shard, 1, 10**6), whole("seed", seed, 0, 2**64 - 1)
@@ -164,7 +164,7 @@ def _recipe(
     if unknown or not formats:
         raise wrong(f"formats are {', '.join(known)}, not {unknown or 'none'}", "formats", unknown, ", ".join(known))
     if isinstance(spec, (str, os.PathLike)) and os.fspath(spec).endswith(".toml"):
-        # A cluster's machines need not have the file.
+        # The machines of a cluster need not have the file.
         spec = {"toml": _text(os.fspath(spec)), "file": os.path.basename(os.fspath(spec))}
     ranges = {}
     for name, range_ in vary.items():
@@ -195,7 +195,7 @@ def _recipe(
         recipe["views"] = _views(views)
     elif views is not None:
         raise wrong("views are of the format labels, which is not asked for", "views", "given", "left out")
-    # As it comes back from a file: tuples are lists.
+    # In the form that a file gives: tuples are lists.
     return json.loads(json.dumps(recipe, default=_plain))
 
 
@@ -223,7 +223,7 @@ def _json(value: Any) -> bytes:
 
 
 def _claim(out: str, recipe: "Mapping[str, Any]") -> None:
-    """The folder is this data set's, from now on. A recipe of which no shard was made gives way: it may have been wrong."""
+    """Claims the folder for this data set. A recipe without any finished shard is replaced: it may have been wrong."""
     there = _claimed(out)
     if there == recipe:
         return
@@ -237,7 +237,7 @@ def _claim(out: str, recipe: "Mapping[str, Any]") -> None:
 
 
 def _claimed(out: str) -> "Optional[Dict[str, Any]]":
-    """The recipe of the folder's data set."""
+    """Returns the recipe of the folder's data set."""
     try:
         with open(os.path.join(out, "recipe.json"), encoding="utf-8") as file:
             return json.load(file)
@@ -270,7 +270,7 @@ def _entry(out: str, k: int) -> "Optional[Dict[str, Any]]":
 
 
 def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
-    """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
+    """Makes one shard and puts it in its place; the bytes do not depend on who makes it."""
     first = k * recipe["shard"]
     last = min(first + recipe["shard"], recipe["n"])
     tar, digests = io.BytesIO(), []
@@ -294,13 +294,13 @@ def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
     # Another call may have taken the folder before it held a shard; data sets are not mixed.
     if _claimed(out) != recipe:
         raise ValueError(f"{out} was taken by another data set meanwhile; choose another folder")
-    # What says that the shard is there comes after it: the first of the list is renamed last.
+    # The entry comes after its shard, because the first file of the list is renamed last.
     write_whole(out, [(f"{_name(k)}.json", _json(entry)), (f"{_name(k)}.tar", data)])
     return k
 
 
 def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tuple[str, bytes]]]":
-    """One plant of a recipe: its digest, and its files by their extensions."""
+    """Makes one plant of a recipe; returns its digest, and its files by their extensions."""
     import burgeon
 
     seed = plant_seed(recipe["seed"], index)
@@ -342,17 +342,17 @@ VIEWS = {
     "background": "sky",
     "shadow": True,
 }
-"""How pictures with labels are taken, unless it is said: how many of each plant; pixels; degrees that the shorter side spans and
-degrees above the horizon, each a number or (least, most); whether sun and sky differ from picture to picture; and as of
-``Plant.render``. The azimuth is any."""
+"""Defaults of the pictures with labels: number for each plant; pixels; degrees that the shorter side spans and degrees above the
+horizon, each a number or (least, most); whether sun and sky differ from picture to picture; and arguments of ``Plant.render``.
+The azimuth is random."""
 LIGHT = {"azimuth": (0.0, 360.0), "elevation": (15.0, 75.0), "sunshine": (0.3, 1.2), "skylight": (0.7, 1.2)}
-"""Where the sun stands (degrees) and how bright sun and sky are in pictures whose light differs: from overcast to clear."""
+"""Direction of the sun (degrees) and brightness of sun and sky in pictures with different light: from overcast to clear."""
 MOST_VIEWS = 64
-"""Pictures of one plant."""
+"""Most pictures of one plant."""
 
 
 def _views(given: "Optional[Mapping[str, Any]]") -> "Dict[str, Any]":
-    """How pictures with labels are taken, checked."""
+    """Returns the settings of pictures with labels, checked."""
     given = table("views", given)
     keys("views", given, VIEWS)
     views: "Dict[str, Any]" = {**VIEWS, **given}
@@ -379,7 +379,7 @@ def _views(given: "Optional[Mapping[str, Any]]") -> "Dict[str, Any]":
 
 
 def _labelled(plant: Any, views: "Mapping[str, Any]", seed: int) -> "List[Tuple[str, bytes]]":
-    """Pictures of a plant or grove with their labels, as files."""
+    """Returns pictures of a plant or grove with their labels, as files."""
     import numpy as np
 
     from . import _burgeon, labels
@@ -414,7 +414,8 @@ def _between(range_: "Sequence[float]", key: str) -> float:
 
 
 def _scene(spec: Any, seed: int, kinds: int = 2, plant: "Optional[Mapping[str, Any]]" = None, **fields: Any) -> Any:
-    """A scene of a data set: ``kinds`` plants of a species, with fields ``plant`` of ``grow``, placed by ``burgeon.scene``."""
+    """Makes a scene of a data set: ``kinds`` plants of a species, with fields ``plant`` of ``grow``, placed by
+    ``burgeon.scene``."""
     import burgeon
 
     count = whole("kinds", kinds, 1, 100)
@@ -437,12 +438,12 @@ def export(
     held_out: float = 0.2,
     least_pixels: int = 16,
 ) -> "Dict[str, Any]":
-    """Writes the labels of a data set (format ``labels``) as other programs read them, into a new folder; returns counts.
+    """Writes the labels of a data set (format ``labels``) in the formats of other programs, into a new folder; returns counts.
 
     ``kinds``: ``coco`` (instances as run lengths), ``panoptic``, ``keypoints``, ``yolo`` (outlines as polygons, or boxes without
     ``segments``), ``depth``, ``normals``, ``semantic``, ``instance``, ``cloud``; ``held_out``: the share of plants, 0 to 0.9, of
-    which all pictures go to ``val`` and not to ``train``; ``least_pixels``: instances that show less are left out.
-    The folder is there whole or not at all.
+    which all pictures go to ``val`` and not to ``train``; ``least_pixels``: smaller instances are left out. The folder is written
+    completely or not at all.
     """
     from ._export import export as exported
 
@@ -456,7 +457,7 @@ def _spec(spec: Any) -> Any:
 
 
 def _drawn(range_: Any, seed: int, name: str) -> Any:
-    # Of all that Python draws, only `random()` of a seed in text is the same in every version.
+    # Of all random functions of Python, only `random()` with a text as seed is the same in every version.
     share = random.Random(f"{seed}:{name}").random()
     if isinstance(range_, dict):
         choices = range_["choice"]
@@ -483,7 +484,7 @@ def _finish(out: str, recipe: "Mapping[str, Any]") -> "Dict[str, Any]":
 
 
 def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]", rows: bytes) -> "Dict[str, Any]":
-    """The data set in the words of Croissant 1.0 (MLCommons)."""
+    """Describes the data set in the vocabulary of Croissant 1.0 (MLCommons)."""
     spec = recipe["spec"] if isinstance(recipe["spec"], str) else "plants"
     files = [
         {
@@ -553,11 +554,11 @@ CROISSANT = (
     *("includes", "isLiveDataset", "jsonPath", "key", "md5", "parentField", "path", "recordSet", "references", "regex"),
     *("repeated", "replace", "samplingRate", "separator", "source", "subField", "transform"),
 )
-"""Words of Croissant 1.0 that stand without its prefix."""
+"""Terms of Croissant 1.0 that need no prefix."""
 
 
 def _kinds(recipe: "Mapping[str, Any]") -> "Dict[str, str]":
-    """The kinds of the arguments that differ from plant to plant; of tables and lists it is their JSON."""
+    """Returns the types of the arguments that differ from plant to plant; tables and lists are JSON."""
     kinds = {}
     for name, range_ in sorted(recipe["vary"].items()):
         values = range_["choice"] if isinstance(range_, dict) else range_
@@ -569,7 +570,7 @@ def _kinds(recipe: "Mapping[str, Any]") -> "Dict[str, str]":
 
 
 def _rows(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> bytes:
-    """A table of all plants, for whoever chooses some of them, and for tools that read data sets."""
+    """Returns a table of all plants, for choosing some of them, and for tools that read data sets."""
     import csv
 
     out = io.StringIO()
@@ -585,8 +586,8 @@ def _rows(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") ->
 
 
 class _Bar:
-    """How far it is, on the error output: by tqdm where that is installed, else as a line that is drawn over again on a
-    terminal, else (in files, in notebooks) as a line now and then."""
+    """Shows the progress on the error output: by tqdm if that is installed, else as a line that is redrawn on a terminal, else
+    (in files, in notebooks) as a line now and then."""
 
     def __init__(self, total: int, done: int, wanted: bool) -> None:
         self.total, self.done, self.wanted, self.bar = total, done, wanted, None
@@ -624,4 +625,4 @@ class _Bar:
 
 
 EVERY_S = 10.0
-"""How often a line tells how far it is where nothing can be drawn over."""
+"""Seconds between two such lines."""

@@ -6,7 +6,7 @@
 True
 
 ``read`` takes an inventory, ``grow`` a spec (docs/forests.md); both give a ``Stand``, whose columns are NumPy arrays and whose
-``tiles`` are those of the command, the same to the byte (docs/tiles.md). Plants that stand together as meshes: ``burgeon.grove``.
+``tiles`` are those of the command, with the same bytes (docs/tiles.md). Plants that stand together as meshes: ``burgeon.grove``.
 """
 
 from __future__ import annotations
@@ -31,28 +31,28 @@ COLUMNS = ("species", "row", "position", "height", "dbh", "crown_width", "age", 
 """Columns of a stand."""
 
 MOST_BYTES = 1 << 30
-"""An inventory is no larger."""
+"""Most bytes of an inventory."""
 
 JOBS = 4
-"""Parts of the work of each worker: more keep all of them busy to the end, fewer read fewer models again."""
+"""Parts of the work for each worker: more keep all of them busy to the end, fewer read fewer models again."""
 
 Inventory = Union[str, "os.PathLike[str]", bytes, Any]
 StandSpec = Union[str, "os.PathLike[str]", Mapping[str, Any], SpecText]
 
 
 class Tiles(NamedTuple):
-    """A tileset that was written."""
+    """A written tileset."""
 
     folder: str
-    """Where ``tileset.json`` lies."""
+    """Folder of ``tileset.json``."""
     manifest: "Dict[str, Any]"
-    """What ``manifest.json`` holds: ``key``, and ``files``, each with ``file``, ``digest``, ``bytes``; empty of one tile."""
+    """Contents of ``manifest.json``: ``key``, and ``files``, each with ``file``, ``digest``, ``bytes``; empty for one tile."""
     report: "Dict[str, Any]"
     """``variants``, ``tiles``, the largest errors of measures in metres, ``clipped``, ``warnings``."""
 
 
 class Stand:
-    """The trees of a forest, one row each. Nothing changes it. Metres, +x east, +y up, +z south."""
+    """The trees of a forest, one row each. A stand never changes. Metres, +x east, +y up, +z south."""
 
     __slots__ = ("_columns", "_raw", "_recipe", "seed")
 
@@ -94,7 +94,7 @@ class Stand:
 
     @property
     def row(self) -> "np.ndarray":
-        """(n,) uint32: row of the inventory, from 1; of a stand that grew the number of the tree."""
+        """(n,) uint32: row of the inventory, from 1; in a grown stand the number of the tree."""
         return self._column("row")
 
     @property
@@ -109,7 +109,7 @@ class Stand:
 
     @property
     def dbh(self) -> "np.ndarray":
-        """(n,) float64: diameter of the stem at 1.3 m, metres; 0 of lower trees."""
+        """(n,) float64: diameter of the stem at 1.3 m, metres; 0 for lower trees."""
         return self._column("dbh")
 
     @property
@@ -129,7 +129,7 @@ class Stand:
 
     @property
     def yaw(self) -> "np.ndarray":
-        """(n,) float64: turn about the vertical, radians."""
+        """(n,) float64: rotation about the vertical, radians."""
         return self._column("yaw")
 
     @property
@@ -138,7 +138,7 @@ class Stand:
         return self._column("up")
 
     def table(self) -> "Dict[str, np.ndarray]":
-        """Columns for a data frame: ``pandas.DataFrame(stand.table())``; x, y and z are metres from ``origin``."""
+        """Returns columns for a data frame: ``pandas.DataFrame(stand.table())``; x, y and z are metres from ``origin``."""
         x, y, z = self.position.T
         names = np.array(self.species_names)[self.species]
         own = {"row": self.row, "species": names, "x": x, "y": y, "z": z}
@@ -146,17 +146,17 @@ class Stand:
 
     @property
     def report(self) -> "Dict[str, Any]":
-        """What was read or grown: ``rows``, ``skipped``, ``given`` and ``filled_log_interval`` of height, dbh, crown width and
-        age, ``duplicates``, ``touching``; of a stand that grew ``history`` (year, trees and basal area in square metres a
-        hectare); ``warnings``."""
+        """Report of the reading or growth: ``rows``, ``skipped``, ``given`` and ``filled_log_interval`` of height, dbh, crown
+        width and age, ``duplicates``, ``touching``; for a grown stand ``history`` (year, trees and basal area in square metres
+        per hectare); ``warnings``."""
         return json.loads(self._raw.report())
 
     def to_csv(self) -> bytes:
-        """Its table as CSV."""
+        """Returns its table as CSV."""
         return bytes(self._raw.csv())
 
     def save(self, path: "str | os.PathLike[str]") -> None:
-        """Writes its table as ``.csv``, whole or not at all."""
+        """Writes its table as ``.csv``, completely or not at all."""
         folder, name = os.path.split(path_of("path", path))
         if not name.lower().endswith(".csv"):
             raise beyond("path", repr(name), "a name that ends with .csv")
@@ -188,18 +188,18 @@ class Stand:
     ) -> Tiles:
         """Writes it as 3D Tiles of grown plants (``burgeon forest -o FOLDER``), the same bytes with any number of workers.
 
-        ``variants``: plants of each species and age, 1 to 64; ``seed``: of the plants, by default that of the stand;
+        ``variants``: plants of each species and age, 1 to 64; ``seed``: that of the plants, by default that of the stand;
         ``finest``, ``lods``: levels of meshes, 0 to 6; ``impostor``: pixels of the pictures far away, 128 to 4096, or None;
         ``tile_trees``: most trees of a finest tile; ``pack``: ``meshopt`` or ``quantized``; ``detail``, ``sides``,
-        ``texture_size``, ``foliage``: as of ``burgeon.grow``; ``glb``, ``usd``: also all trees in one file, at ``level``;
-        ``place``: longitude, latitude and height of the origin, which sets it onto the earth; ``tile``: depth, column, row
-        and level of one tile, which is written alone with its models.
+        ``texture_size``, ``foliage``: as for ``burgeon.grow``; ``glb``, ``usd``: also all trees in one file, at ``level``;
+        ``place``: longitude, latitude and height of the origin, which sets it onto the earth; ``tile``: depth, column, row and
+        level of one tile, which is written alone with its models.
 
-        ``workers``: processes (1: this one; None: as many as the machine has cores); ``ray``: tasks of the Ray cluster that
-        ``ray.init`` has joined, or of one on this machine. All its machines must see the folder.
+        ``workers``: number of processes (1: this one; None: as many as the machine has cores); ``ray``: tasks of the Ray cluster
+        that ``ray.init`` has joined, or of one on this machine. All its machines must see the folder.
 
-        A worker that is killed is replaced. Ctrl-C, a full disk or an error leave whole files only; the same call goes on.
-        Raises ValueError for a folder that holds something else, SpecError, BudgetError.
+        A killed worker is replaced. Ctrl-C, a full disk or an error leave only complete files; the same call continues. Raises
+        ValueError for a folder with other contents, SpecError, BudgetError.
         """
         lods = whole("lods", lods, 0, 6)
         finest = whole("finest", finest, 0, lods)
@@ -231,17 +231,17 @@ class Stand:
             return Tiles(folder, {}, json.loads(raw.report()))
         if ray or workers != 1:
             self._make_parts(raw, form, folder, workers, ray)
-        # All that is there stays; whatever is missing is made here.
+        # Existing files stay; missing ones are made here.
         raw.write(folder)
         with open(os.path.join(folder, "manifest.json"), encoding="utf-8") as file:
             return Tiles(folder, json.load(file), json.loads(raw.report()))
 
     def _make_parts(self, raw: Any, form: "Dict[str, Any]", folder: str, workers: "Optional[int]", ray: bool) -> None:
-        """Models and tiles on several workers. This process alone notes what lies there."""
+        """Makes models and tiles on several workers. Only this process records the files."""
         raw.adopt(folder, [])
         count = (workers or os.cpu_count() or 1) * JOBS
         variants: "List[Part]" = [([one], []) for one in raw.variants()]
-        # Models first: tiles name them.
+        # Models come first, because tiles name them.
         of_tiles: "List[Part]" = [([], part) for part in _parts(raw.tiles(), count)]
         for jobs in (variants, of_tiles):
             for files in results(_make_part, (self._recipe, form, folder), jobs, workers=workers, ray=ray):
@@ -249,14 +249,14 @@ class Stand:
 
 
 Part = Tuple[List[int], List[Tuple[int, int, int, int]]]
-"""Plants whose models are made, or tiles."""
+"""Plants for their models, or tiles."""
 
 _known: "Dict[str, Any]" = {}
-"""The tiles that this process worked on last."""
+"""The tiles on which this process worked last."""
 
 
 def _make_part(made_of: Recipe, form: "Dict[str, Any]", folder: str, part: Part) -> "List[Tuple[str, str, int]]":
-    """Writes a part of a tileset; its files with digests and sizes."""
+    """Writes a part of a tileset; returns its files with digests and sizes."""
     import hashlib
     import pickle
 
@@ -301,14 +301,14 @@ def read(
     seed: int = 1,
     budget: float = 1.0,
 ) -> Stand:
-    """The stand of an inventory.
+    """Reads the stand of an inventory.
 
     ``inventory``: a file of CSV or GeoJSON, its bytes, or a data frame of pandas or polars, with the columns of docs/forests.md;
-    ``crs``: ``metres``, ``local``, ``utm`` or a zone; ``setting``: among what trees grow, by which missing measures are filled
-    (``free``, ``stand``); ``species``: of rows that name none, or one that is not known; ``bad_rows``: ``refuse`` or ``skip``;
-    ``year``: of the inventory, for columns that say when a tree was planted; ``ground``: a table as specs have it, such as
-    ``{"kind": "geotiff", "file": "hill.tif"}``; ``lean``: how much trunks lean with the ground, 0 to 1.
-    Raises SpecError with the row and column at fault.
+    ``crs``: ``metres``, ``local``, ``utm`` or a zone; ``setting``: surroundings of the trees, by which missing measures are
+    filled (``free``, ``stand``); ``species``: that of rows with none, or with an unknown one; ``bad_rows``: ``refuse`` or
+    ``skip``; ``year``: that of the inventory, for columns with the year of planting; ``ground``: a table as in specs, such as
+    ``{"kind": "geotiff", "file": "hill.tif"}``; ``lean``: lean of trunks on slopes, 0 to 1. Raises SpecError with the row and
+    column at fault.
     """
     data, path = _bytes(inventory)
     reading = {
@@ -328,9 +328,9 @@ def read(
 
 
 def grow(spec: StandSpec, *, seed: int = 1, trust_paths: bool = False, budget: float = 1.0, **fields: Any) -> Stand:
-    """The stand that grows by a spec (docs/forests.md): a TOML file, or a dict of its fields; ``fields`` replace some of them.
+    """Grows the stand of a spec (docs/forests.md): a TOML file, or a dict of its fields; ``fields`` replace some of them.
 
-    The same spec and seed give the same trees as the command. Files that a spec names lie beside it, or anywhere with
+    The same spec and seed give the same trees as the command. Files that a spec names lie in its folder, or anywhere with
     ``trust_paths``. Raises SpecError, BudgetError.
     """
     base: "Dict[str, Any]" = {"preset": None, "toml": None, "trust_paths": flag("trust_paths", trust_paths)}
@@ -348,9 +348,9 @@ def grow(spec: StandSpec, *, seed: int = 1, trust_paths: bool = False, budget: f
 
 
 def tiles(forest: "Union[Stand, StandSpec, Inventory]", folder: "str | os.PathLike[str]", **how: Any) -> Tiles:
-    """Tiles of a stand, of a spec (``.toml`` or dict) or of an inventory: see ``Stand.tiles``.
+    """Writes tiles of a stand, of a spec (``.toml`` or dict) or of an inventory: see ``Stand.tiles``.
 
-    ``seed`` and ``budget`` are also of the stand.
+    ``seed`` and ``budget`` also apply to the stand.
     """
     shared = {name: how[name] for name in ("seed", "budget") if name in how}
     if isinstance(forest, Stand):
@@ -369,7 +369,7 @@ def _is_toml(file: Any) -> bool:
 
 
 def _bytes(inventory: Any) -> "Tuple[bytes, str]":
-    """The bytes of an inventory, and where files are named beside it."""
+    """Returns the bytes of an inventory, and the path to which file names are relative."""
     here = os.path.abspath("inventory.csv")
     if isinstance(inventory, (bytes, bytearray)):
         return bytes(inventory), here
@@ -380,7 +380,7 @@ def _bytes(inventory: Any) -> "Tuple[bytes, str]":
         if len(data) > MOST_BYTES:
             raise wrong(f"{path}: an inventory has at most 1 GiB", "inventory", path, "at most 1 GiB")
         return data, os.path.abspath(path)
-    # Of pandas and of polars.
+    # A data frame of pandas or polars.
     if hasattr(inventory, "columns") and hasattr(inventory, "to_csv"):
         return inventory.to_csv(index=False).encode(), here
     if hasattr(inventory, "columns") and hasattr(inventory, "write_csv"):

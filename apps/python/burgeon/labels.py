@@ -1,4 +1,4 @@
-"""Pictures with everything that a machine learns from: masks, boxes, outlines, points, depth and normals, organ by organ.
+"""Pictures with all labels for training: masks, boxes, outlines, points, depth and normals, organ by organ.
 
 >>> import burgeon as bg
 >>> rose = bg.bloom("rose", seed=2)
@@ -7,9 +7,9 @@
 >>> shot.masks.instance.shape, len(shot.instances) > 3
 ((64, 64), True)
 
-An **instance** is an axis or an organ. Its number is the same in every picture and cloud of a plant or grove: in a plant,
-1 and more for the rows of ``plant.axes``, then for the rows of ``plant.organs``; in a grove the plants follow one another. A
-flower has the same numbers on every day. 0 is what is none: soil, stones, pots, nothing.
+An **instance** is an axis or an organ. Its number is the same in every picture and cloud of a plant or grove: in a plant, 1 and
+more for the rows of ``plant.axes``, then for the rows of ``plant.organs``; in a grove the plants follow one another. A flower has
+the same numbers on every day. 0 stands for all else: soil, stones, pots, nothing.
 """
 
 from __future__ import annotations
@@ -30,43 +30,43 @@ if TYPE_CHECKING:
 __all__ = ["CATEGORIES", "KEYPOINTS", "Instances", "Shot", "decode", "encode", "instances", "take"]
 
 KEYPOINTS = ("insertion", "tip")
-"""The points of every instance: where it begins on what bears it (of a branch, its branch point), and its end. The tip of an
-organ is that of its vertices which lies farthest from its insertion."""
+"""Points of every instance: its origin on its bearer (for a branch, the branch point), and its end. The tip of an organ is its
+vertex farthest from its insertion."""
 HIDDEN, VISIBLE = 1, 2
-"""Of a point in the picture, as COCO counts; 0 is a point beyond the picture."""
+"""Visibility of a point in the picture, in the numbers of COCO; 0 is a point outside the picture."""
 GROUND = ("soil", "stone", "pot")
-"""Parts that are no instances: what COCO calls stuff."""
+"""Parts that are not instances: COCO calls them stuff."""
 CATEGORIES = {name: row + 1 for row, name in enumerate(PARTS)}
 """Numbers of categories in COCO files: a row of ``burgeon.PARTS``, from 1."""
 MOST_SEGMENTS = 1 << 24
-"""A panoptic picture has three bytes for a number."""
+"""Largest number in a panoptic picture, which has three bytes for it."""
 NEAR_RADII = 1.5
-"""A point on the middle line of wood is seen where its surface is: so many radii before it."""
+"""A point on the middle line of wood is visible if its surface is: up to this number of radii in front of it."""
 NEAR_PIXELS = 2.0
-"""And so many pixels, as surfaces go on within a pixel."""
+"""And up to this number of pixels, as surfaces continue within a pixel."""
 
 
 class Instances(NamedTuple):
     """The axes and organs of a plant or grove; row k is instance k + 1."""
 
     tree: "np.ndarray"
-    """(n,) int32: row of ``grove.places``; 0 of a plant."""
+    """(n,) int32: row of ``grove.places``; 0 for a plant."""
     is_organ: "np.ndarray"
-    """(n,) bool: an organ, else an axis."""
+    """(n,) bool: whether it is an organ, else an axis."""
     row: "np.ndarray"
     """(n,) int32: row of the ``organs`` or ``axes`` of its plant."""
     part: "np.ndarray"
     """(n,) uint8: row of ``burgeon.PARTS``."""
     insertion: "np.ndarray"
-    """(n, 3) float64: where it begins, metres."""
+    """(n, 3) float64: its insertion, metres."""
     tip: "np.ndarray"
     """(n, 3) float64: its end, metres."""
     reach: "np.ndarray"
-    """(n, 2) float64: how far the surface is from either point, metres: the radius of the wood that it lies in."""
+    """(n, 2) float64: distance from the surface to either point, metres: the radius of the wood in which it lies."""
 
 
 def instances(what: "Plant | Grove") -> Instances:
-    """All instances of a plant or grove, whether a picture shows them or not."""
+    """Returns all instances of a plant or grove, visible or not."""
     import numpy as np
 
     if isinstance(what, Plant):
@@ -106,7 +106,7 @@ def _of_plant(plant: Plant) -> Instances:
 
 
 def _tips(plant: Plant) -> "np.ndarray":
-    """Of each organ its vertex that is farthest from where it is rooted; that place itself of an organ without a surface."""
+    """Returns for each organ its vertex farthest from its root; the root itself for an organ without a surface."""
     import numpy as np
 
     tips = np.array(plant.organs.position, np.float64).reshape(-1, 3)
@@ -149,13 +149,13 @@ class Shot(NamedTuple):
     image: "np.ndarray"
     """(height, width, 4) uint8: sRGB and alpha, rows from the top."""
     masks: "Masks"
-    """What each pixel shows: see ``Plant.masks``."""
+    """Labels of each pixel: see ``Plant.masks``."""
     depth: "np.ndarray"
     """(height, width) float32: metres along the view, as depth cameras give them; infinite for nothing."""
     camera: Camera
-    """What took it."""
+    """The camera of the picture."""
     instances: "np.ndarray"
-    """(n,) int64: the instances that are seen, ascending."""
+    """(n,) int64: the visible instances, ascending."""
     area: "np.ndarray"
     """(n,) int64: pixels of each."""
     box: "np.ndarray"
@@ -163,17 +163,17 @@ class Shot(NamedTuple):
     part: "np.ndarray"
     """(n,) uint8: row of ``burgeon.PARTS`` of each."""
     tree: "np.ndarray"
-    """(n,) int32: which plant each belongs to."""
+    """(n,) int32: plant of each."""
     keypoints: "np.ndarray"
-    """(n, 2, 3) float64: of each instance its insertion and its tip: pixels from the left, from the top, and 2 where it is seen,
-    1 where something hides it, 0 where it is beyond the picture (then all are 0)."""
+    """(n, 2, 3) float64: insertion and tip of each instance: pixels from the left, from the top, and 2 if visible, 1 if hidden, 0
+    if outside the picture (then all are 0)."""
 
     def runs(self) -> "Dict[int, np.ndarray]":
-        """Of each instance its mask as run lengths: down the columns, outside first."""
+        """Returns the mask of each instance as run lengths: down the columns, outside first."""
         return run_lengths(self.masks.instance)
 
     def outlines(self) -> "Dict[int, List[np.ndarray]]":
-        """Of each instance the rings of its mask along the edges of pixels: to fill them gives the very mask."""
+        """Returns the rings of the mask of each instance along the edges of pixels: filling them gives exactly the mask."""
         return outlines(self.masks.instance)
 
 
@@ -184,9 +184,9 @@ def take(
     of: "Optional[Instances]" = None,
     **how: Any,
 ) -> Shot:
-    """A picture of a plant or grove by a camera, with its labels.
+    """Takes a picture of a plant or grove by a camera, with its labels.
 
-    ``of``: ``instances(what)``, if several pictures are taken; ``how``: ``background``, ``shadow``, ``supersample``, ``sun``,
+    ``of``: ``instances(what)``, for several pictures; ``how``: ``background``, ``shadow``, ``supersample``, ``sun``,
     ``sunshine``, ``skylight`` and ``seed`` of ``Plant.render``.
     """
     if not isinstance(camera, Camera):
@@ -227,7 +227,8 @@ def _keypoints(known: Instances, row: "np.ndarray", camera: Camera, masks: Any) 
 
 
 def encode(mask: Any) -> "Dict[str, Any]":
-    """A mask (height, width) of truths as COCO's run lengths: ``size`` and ``counts``, as ``pycocotools.mask`` has them."""
+    """Encodes a boolean mask (height, width) as COCO's run lengths: ``size`` and ``counts``, in the form of
+    ``pycocotools.mask``."""
     import numpy as np
 
     mask = np.asarray(mask)
@@ -238,7 +239,7 @@ def encode(mask: Any) -> "Dict[str, Any]":
 
 
 def decode(runs: "Mapping[str, Any]") -> "np.ndarray":
-    """The mask (height, width), bool, of COCO's run lengths."""
+    """Decodes COCO's run lengths to a mask (height, width), bool."""
     height, width = runs["size"]
     counts = unpacked(runs["counts"])
     if (counts < 0).any() or counts.sum() != height * width:
@@ -247,7 +248,7 @@ def decode(runs: "Mapping[str, Any]") -> "np.ndarray":
 
 
 def coco_image(shot: Shot, number_of_image: int, file_name: str) -> "Dict[str, Any]":
-    """The row of a picture in a COCO file, with its camera beside what COCO asks for."""
+    """Returns the row of a picture in a COCO file, with its camera in addition to the fields of COCO."""
     size = {"width": shot.camera.width, "height": shot.camera.height}
     return {"id": number_of_image, "file_name": file_name, **size, "camera": shot.camera.to_dict()}
 
@@ -255,7 +256,8 @@ def coco_image(shot: Shot, number_of_image: int, file_name: str) -> "Dict[str, A
 def coco_annotations(
     shot: Shot, number_of_image: int, first: int = 1, least_pixels: int = 1, keypoints: bool = True
 ) -> "List[Dict[str, Any]]":
-    """The rows of a picture's instances in a COCO file, from number ``first``: mask, area, box, keypoints, instance, tree."""
+    """Returns the rows of a picture's instances in a COCO file, from number ``first``: mask, area, box, keypoints, instance,
+    tree."""
     runs = shot.runs()
     size = [shot.camera.height, shot.camera.width]
     rows: "List[Dict[str, Any]]" = []
@@ -282,7 +284,7 @@ def coco_annotations(
 
 
 def coco_categories(panoptic: bool = False) -> "List[Dict[str, Any]]":
-    """All categories of a COCO file; those of panoptic ones say which are things, the others name the keypoints."""
+    """Returns all categories of a COCO file; those of panoptic ones mark the things, the others name the keypoints."""
     rows = []
     for name, number_of_category in CATEGORIES.items():
         thing = name not in GROUND
@@ -297,10 +299,10 @@ def coco_categories(panoptic: bool = False) -> "List[Dict[str, Any]]":
 
 
 def panoptic(shot: Shot, number_of_image: int, file_name: str, least_pixels: int = 1) -> "Tuple[np.ndarray, Dict[str, Any]]":
-    """The panoptic picture (height, width, 3) uint8 of COCO, whose colours are numbers of segments, and its row.
+    """Returns the panoptic picture (height, width, 3) uint8 of COCO, whose colours are numbers of segments, and its row.
 
-    A segment's number is that of its instance; each kind of ground is one segment, numbered after all instances. Instances of
-    fewer pixels than ``least_pixels`` are nothing, 0.
+    A segment has the number of its instance; each kind of ground is one segment, numbered after all instances. Instances of fewer
+    pixels than ``least_pixels`` become 0, nothing.
     """
     import numpy as np
 
@@ -330,8 +332,8 @@ def panoptic(shot: Shot, number_of_image: int, file_name: str, least_pixels: int
 
 
 def yolo(shot: Shot, segments: bool = False, least_pixels: int = 1) -> str:
-    """The lines of YOLO: a row of ``burgeon.PARTS``, then the box (middle, width, height) or, with ``segments``, the outline as
-    one polygon, all as shares of the picture's width and height."""
+    """Returns the lines of YOLO: a row of ``burgeon.PARTS``, then the box (centre, width, height) or, with ``segments``, the
+    outline as one polygon, all as shares of the picture's width and height."""
     width, height = shot.camera.width, shot.camera.height
     rings = shot.outlines() if segments else {}
     lines = []
@@ -348,7 +350,7 @@ def yolo(shot: Shot, segments: bool = False, least_pixels: int = 1) -> str:
 
 
 def drawn_over(shot: Shot, strength: float = 0.55) -> "np.ndarray":
-    """The picture (height, width, 3) uint8 with each instance in a colour of its own, boxes left out: to look at."""
+    """Returns the picture (height, width, 3) uint8 with each instance in a colour of its own, without boxes, for viewing."""
     import numpy as np
 
     strength = number("strength", strength, 0, 1)

@@ -18,7 +18,7 @@ __all__ = ["Law"]
 
 
 class Law:
-    """How organs grow from day to day (``burgeon bloom fit``)."""
+    """Growth laws of organs (``burgeon bloom fit``)."""
 
     __slots__ = ("_raw",)
 
@@ -35,7 +35,7 @@ class Law:
         return self
 
     def __eq__(self, other: object) -> bool:
-        """The same laws, with all that was measured of them."""
+        """Compares the laws and all their measures."""
         if not isinstance(other, Law):
             return NotImplemented
         return self is other or self._raw.json() == other._raw.json()
@@ -53,9 +53,9 @@ class Law:
     ) -> "Law":
         """Fits a law to sizes.
 
-        ``days``: (n,), at least 3, increasing; ``sizes``: (n,), metres, or a dict of such by the names of organs. Those
-        of one kind (``leaf-1``, ``leaf-2``) share rate and time. Logistic, Gompertz, monomolecular or straight: what
-        predicts days that are left out best. ``budget``: how many times the usual limit may be exceeded, some 49,000 sizes.
+        ``days``: (n,), at least 3, increasing; ``sizes``: (n,), metres, or a dict of such by the names of organs. Those of one
+        kind (``leaf-1``, ``leaf-2``) share rate and time. The form is logistic, Gompertz, monomolecular or straight: the one that
+        predicts omitted days best. ``budget``: factor by which the usual limit, some 49,000 sizes, may be exceeded.
         """
         organs = sizes if isinstance(sizes, Mapping) else {name: sizes}
         when = _numbers(days, "days")
@@ -90,7 +90,7 @@ class Law:
 
     @classmethod
     def read(cls, path: "str | os.PathLike[str]") -> "Law":
-        """A law that ``burgeon bloom fit`` or ``save`` wrote."""
+        """Reads a law that ``burgeon bloom fit`` or ``save`` wrote."""
         with open(path, encoding="utf-8") as file:
             return cls(_burgeon.RawLaw.read(file.read()))
 
@@ -100,21 +100,21 @@ class Law:
         write_whole(folder, [(name, (json.dumps(self.to_dict(), indent=2) + "\n").encode())])
 
     def to_dict(self) -> "Dict[str, Any]":
-        """All of it: for each organ ``form``, ``K``, ``p0``, ``r``, ``r2``, ``standard_errors``, ``loo_rmse``, ..."""
+        """Returns all of it: for each organ ``form``, ``K``, ``p0``, ``r``, ``r2``, ``standard_errors``, ``loo_rmse``, ..."""
         return json.loads(self._raw.json())
 
     @property
     def organs(self) -> "list[str]":
-        """Names of what has a law."""
+        """Names of the organs."""
         return [law["organ"] for law in self.to_dict()["laws"]]
 
     @property
     def determined(self) -> "list[bool]":
-        """Whether the days determine the law of each organ; what is not determined sets no pace."""
+        """Whether the days determine the law of each organ; an undetermined law sets no pace."""
         return self._raw.determined()
 
     def __call__(self, day: "float | Sequence[float]", organ: int = 0) -> "float | np.ndarray":
-        """The size on a day or on several, in the count of the days that were fitted, metres."""
+        """Returns the size on a day or on several, counted as in the fit, metres."""
         import numpy as np
 
         days = np.asarray(day, np.float64)
@@ -140,7 +140,7 @@ def scans_of(
     budget: float,
     texture: str = "scan",
 ) -> Recipe:
-    """What makes scans of several days, in the order of the days."""
+    """Returns the recipe of scans of several days, in the order of the days."""
     rows = []
     for key, cloud in scans.items():
         row: "Dict[str, Any]" = {"day": number("scans: a day", key, -1e4, 1e4, "d"), "file": None, "points": b"", "colors": b""}

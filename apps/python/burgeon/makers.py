@@ -1,4 +1,4 @@
-"""What is asked for -> plants. The same specs, ranges and defaults as the command line has."""
+"""Requests -> plants. The same specs, ranges and defaults as the command line."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["bloom", "grow", "leaf", "open", "presets", "scan", "schema", "sketch
 
 
 class SpecText(NamedTuple):
-    """A TOML file that was read before."""
+    """Text of a TOML file."""
 
     toml: str
     file: str
@@ -35,7 +35,7 @@ Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], SpecText, None]
 
 
 def _base(spec: Spec, trust_paths: bool = False) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
-    """Where a spec comes from, and the fields that it is given as."""
+    """Returns the source of a spec, and its fields if it is a dict."""
     base: "Dict[str, Any]" = {"preset": None, "toml": None, "trust_paths": trust_paths}
     if spec is None:
         return base, {}
@@ -75,18 +75,17 @@ def grow(
     trust_paths: bool = False,
     **fields: Any,
 ) -> Plant:
-    """A tree (``burgeon grow``).
+    """Grows a tree (``burgeon grow``).
 
-    ``spec``: a species (``presets()[0]``), a TOML file, or a dict of fields; ``fields`` replace fields of it, tables by
-    tables: ``grow("oak", seed=2, age=30, leaves={"leaf_keep": 0.5})``. What fields there are, with ranges and units:
-    ``schema("tree")``, docs/trees.md.
+    ``spec``: a species (``presets()[0]``), a TOML file, or a dict of fields; ``fields`` replace fields of it, tables by tables:
+    ``grow("oak", seed=2, age=30, leaves={"leaf_keep": 0.5})``. All fields, with ranges and units: ``schema("tree")``,
+    docs/trees.md.
 
-    ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: of an ordinary branch, 3 to 24; ``textures``: False for
-    plain colours; ``texture_size``: pixels of a side, 64 to 4096; ``foliage``: leaves by their ``outlines``, as ``cards`` of
-    which they are cut out, or ``by-level`` of detail; ``leaf``: one of ``leaf()`` that it bears in the place of its own;
-    ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded; ``trust_paths``: meshes,
-    points and a leaf that a file names may lie outside of its folder.
-    Ctrl-C stops it. Raises SpecError, BudgetError.
+    ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: number of sides of an ordinary branch, 3 to 24; ``textures``: False
+    for plain colours; ``texture_size``: pixels of a side, 64 to 4096; ``foliage``: leaves as ``outlines``, as ``cards`` from
+    which they are cut out, or ``by-level`` of detail; ``leaf``: a result of ``leaf()`` that replaces the tree's own leaf;
+    ``wind``: with columns for wind; ``budget``: factor by which the usual limits may be exceeded; ``trust_paths``: meshes, points
+    and a leaf that a file names may lie outside of its folder. Ctrl-C stops it. Raises SpecError, BudgetError.
     """
     base, own = _base(spec, flag("trust_paths", trust_paths))
     skin = {"detail": detail, "sides": sides, "textures": textures, "texture_size": texture_size}
@@ -119,15 +118,15 @@ def bloom(
     budget: float = 1.0,
     **fields: Any,
 ) -> Plant:
-    """A flower that opens, on a day (``burgeon bloom run``), or a plant of scans on any day between or beside theirs.
+    """Makes a flower that opens, on a day (``burgeon bloom run``), or a plant of scans on any day, also outside of theirs.
 
     ``spec``: a flower (``presets()[1]``), a TOML file, or a dict; ``day``: 0 is the bud, default full bloom; ``law``: a
     fitted law that sets the pace; ``fields``: ``schema("flower")``, docs/bloom.md.
 
-    Of scans, ``spec`` is a dict from days to clouds of points, each a file (``.xyz``, ``.ply``, ``.pcd``, ``.las``) or an array
+    For scans, ``spec`` is a dict from days to clouds of points, each a file (``.xyz``, ``.ply``, ``.pcd``, ``.las``) or an array
     (points, 3), or (points, 6) with red, green and blue from 0 to 255, in ``unit`` (m, cm, mm) with ``up`` (y, z); ``day``:
-    default the last; ``single``: each is one organ, not a stem with leaves; ``law``: that of ``Law.fit_scans``, default an even
-    pace; ``texture``: ``scan`` (the colours of the clouds, where they have some; the default) or ``plain``.
+    default the last; ``single``: each is one organ, not a stem with leaves; ``law``: a result of ``Law.fit_scans``, default an
+    even pace; ``texture``: ``scan`` (the colours of the clouds, if they have some; the default) or ``plain``.
     """
     if not isinstance(law, (Law, type(None))):
         raise TypeError(f"law must be a Law, not {law!r}")
@@ -148,7 +147,7 @@ def bloom(
 
 
 CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las", ".laz")
-"""Files of points."""
+"""Extensions of files of points."""
 
 
 def leaf(
@@ -165,14 +164,14 @@ def leaf(
     budget: float = 1.0,
     **fields: Any,
 ) -> Plant:
-    """A leaf (``burgeon leaf``): of measured marks or chief veins (``.csv``), of a vein graph (``.json``), of a scan
+    """Makes a leaf (``burgeon leaf``): from measured marks or chief veins (``.csv``), from a vein graph (``.json``), from a scan
     (``.xyz``, ``.ply``, ``.pcd``, ``.las`` in ``unit``, or an array (points, 3) in metres, or (points, 6) with red, green and
-    blue from 0 to 255), or of numbers. Of a scan, ``texture`` is ``scan`` (its colours, where it has some; the default) or
+    blue from 0 to 255), or from numbers. For a scan, ``texture`` is ``scan`` (its colours, if it has some; the default) or
     ``plain``.
 
-    ``venation``: ``palmate`` or ``parallel``, a leaf of chief veins that start together: how many ``veins`` (odd),
-    ``length`` in metres, of palmate leaves the ``depth`` of the notches (0 to 0.9), and ``side_veins`` (0 to 12);
-    ``fields``: ``schema("leaf")``, docs/leaves.md; of a leaf of numbers ``form={"length_m": 0.08, "lobes": 0.4}``.
+    ``venation``: ``palmate`` or ``parallel``, a leaf of chief veins that start together: the number of ``veins`` (odd),
+    ``length`` in metres, for palmate leaves the ``depth`` of the notches (0 to 0.9), and ``side_veins`` (0 to 12); ``fields``:
+    ``schema("leaf")``, docs/leaves.md; for a leaf of numbers ``form={"length_m": 0.08, "lobes": 0.4}``.
     """
     file, toml, own = None, None, {}
     others = {"venation": venation, "veins": veins, "length": length, "depth": depth, "side_veins": side_veins, "wind": wind}
@@ -228,20 +227,20 @@ def leaf(
 
 
 def _only_of_files(unit: str, why: str) -> None:
-    """Fails on a unit where no file of points is read."""
+    """Fails on a unit without a file of points."""
     if word("unit", unit) != "m":
         raise unused("unit", unit, f"is of a file of points ({', '.join(CLOUDS)}); {why}")
 
 
 def _not_of_scans(given: "Mapping[str, Any]") -> None:
-    """Fails on what a leaf of a scan does not have."""
+    """Fails on arguments that do not apply to a leaf of a scan."""
     for name, value in given.items():
         if value is not None:
             raise unused(name, value, "is of other leaves: that of a scan is as it was scanned")
 
 
 def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
-    """The leaf of a cloud of points."""
+    """Makes the leaf of a cloud of points."""
     texture = _scan_texture(fields, "measured leaves; a leaf of a scan has no fields but texture")
     rows: "List[List[float]]" = []
     colors = b""
@@ -252,7 +251,7 @@ def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[
 
 
 def _scan_texture(fields: "Mapping[str, Any]", others: str) -> str:
-    """The one field of what is made of scans."""
+    """Returns the texture, the only field of scanned leaves and plants."""
     for field, value in fields.items():
         if field != "texture":
             raise wrong(f"{field} is of {others}", field, value, "left out")
@@ -280,14 +279,14 @@ def scan(
     budget: float = 1.0,
     trust_paths: bool = False,
 ) -> Plant:
-    """The tree of a laser scan (``burgeon scan``): stem and branches with their radii.
+    """Finds the tree of a laser scan (``burgeon scan``): stem and branches with their radii.
 
-    ``cloud``: a file (``.laz``, ``.las``, ``.ply``, ``.xyz``, ``.txt``, ``.pcd``, ``.obj``) or an array (points, 3), in
-    ``unit`` (m, cm, mm) with ``up`` (z, y); a ``Cloud`` of ours has ``up="y"``. ``leaves``: what ``grow`` takes, a species
-    whose leaves it gets (default: bare); ``at``: where the stem stands, in the two coordinates that are not up (default: the
-    largest thing on the ground); ``cell``: edge of the cubes that the cloud is seen in, metres, 0.001 to 1; ``gap``: widest
-    gap that is bridged, metres, 0 to 5; ``trust_paths``: of ``leaves``, as in ``grow``.
-    ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
+    ``cloud``: a file (``.laz``, ``.las``, ``.ply``, ``.xyz``, ``.txt``, ``.pcd``, ``.obj``) or an array (points, 3), in ``unit``
+    (m, cm, mm) with ``up`` (z, y); a ``Cloud`` of ours has ``up="y"``. ``leaves``: a species as for ``grow``, whose leaves it
+    gets (default: bare); ``at``: place of the stem, in the two horizontal coordinates (default: the largest thing on the ground);
+    ``cell``: edge of the cubes into which the cloud is divided, metres, 0.001 to 1; ``gap``: widest gap that is bridged, metres,
+    0 to 5; ``trust_paths``: for ``leaves``, as in ``grow``. ``plant.found`` counts the points, ``plant.place`` is its place in
+    the scan.
     """
     if at is not None:
         if isinstance(at, (str, bytes)) or not hasattr(at, "__len__") or len(at) != 2:
@@ -329,12 +328,12 @@ def sketch(
     budget: float = 1.0,
     **fields: Any,
 ) -> Plant:
-    """The plant of a drawing (``burgeon sketch``).
+    """Makes the plant of a drawing (``burgeon sketch``).
 
-    ``strokes``: a file (``.svg``, ``.inkml``, ``.ndjson``, ``.json``), or the strokes in the order in which they were
-    drawn, each an array (points, 2) of x and y in any unit, y upwards (``y_up=False``: downwards, as on a screen).
-    ``classes``: what strokes are, by number (``{0: "axis"}``); ``day``: its flowers open, 0 to 100; ``petals``: a colour such as
-    ``blue``, otherwise by chance; ``fields``: ``schema("sketch")``, such as ``height_m=0.3`` or ``read_as="tree"``.
+    ``strokes``: a file (``.svg``, ``.inkml``, ``.ndjson``, ``.json``), or the strokes in the order of drawing, each an array
+    (points, 2) of x and y in any unit, y upwards (``y_up=False``: downwards, as on a screen). ``classes``: classes of strokes, by
+    number (``{0: "axis"}``); ``day``: the day if its flowers open, 0 to 100; ``petals``: a colour such as ``blue``, otherwise
+    random; ``fields``: ``schema("sketch")``, such as ``height_m=0.3`` or ``read_as="tree"``.
     """
     asked = asked_of(
         seed,
@@ -389,9 +388,9 @@ def open(
     wind: bool = False,
     budget: float = 1.0,
 ) -> "List[Plant]":
-    """The plants of a project of the Studio (``.burgeon``, or its bytes) that are not hidden, each as it was made there.
+    """Makes the visible plants of a project of the Studio (``.burgeon``, or its bytes), each as it was made there.
 
-    ``plant.place`` says where each stands; ``only``: one of them, by its row; ``wind``: with columns for wind.
+    ``plant.place`` is the place of each; ``only``: one of them, by its row; ``wind``: with columns for wind.
     """
     import builtins
 
@@ -405,7 +404,7 @@ def open(
 
 
 def schema(maker: str) -> "Dict[str, Any]":
-    """The JSON Schema of what a maker can be asked for: meaning, unit (``x-unit``), range and default of each field.
+    """Returns the JSON Schema of a maker's options: meaning, unit (``x-unit``), range and default of each field.
 
     ``maker``: ``tree``, ``flower``, ``leaf``, ``sketch`` or ``skin``.
     """
@@ -413,5 +412,5 @@ def schema(maker: str) -> "Dict[str, Any]":
 
 
 def presets() -> "Tuple[List[str], List[str]]":
-    """The words of the trees and of the flowers that come with the program."""
+    """Returns the words of the trees and of the flowers that come with the program."""
     return _burgeon.presets()

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .camera import Camera
 
     class View(TypedDict, total=False):
-        """How a picture is taken."""
+        """Settings of a picture."""
 
         view: Literal["front", "three-quarter", "side", "top", "turntable", "orbit"]
         azimuth: float
@@ -38,16 +38,16 @@ __all__ = ["Cloud", "Masks", "Model", "Part"]
 
 
 def array(column: Any) -> "np.ndarray":
-    """What a column of the core holds, without a copy; read-only."""
+    """Returns the content of a column of the core, without a copy; read-only."""
     import numpy as np
 
     return np.asarray(column)
 
 
 class Part:
-    """One mesh of a model with one material. Its arrays look at the memory of the core: no copy, read-only.
+    """One mesh of a model with one material. Its arrays use the memory of the core: no copy, read-only.
 
-    An array keeps the memory it looks at; the plant and the model may go.
+    An array keeps its memory alive; the plant and the model may go.
     """
 
     __slots__ = ("_raw", "_row", "material", "name")
@@ -80,22 +80,22 @@ class Part:
 
     @property
     def uvs(self) -> "np.ndarray":
-        """(n, 2) float32: texture coordinates, v down as in glTF; of no rows where the part has none."""
+        """(n, 2) float32: texture coordinates, v down as in glTF; without rows if the part has none."""
         return self._column("uvs")
 
     @property
     def colors(self) -> "np.ndarray":
-        """(n, 3) float32: linear RGB, multiplied with the material's colour; of no rows where the part has none."""
+        """(n, 3) float32: linear RGB, multiplied with the material's colour; without rows if the part has none."""
         return self._column("colors")
 
     @property
     def wind(self) -> "np.ndarray":
-        """(n, 4) float32, 0 to 1: sway of the plant, of the limb, flutter, phase; of no rows without ``wind=True``."""
+        """(n, 4) float32, 0 to 1: sway of the plant, of the limb, flutter, phase; without rows unless ``wind=True``."""
         return self._column("wind")
 
     @property
     def pivots(self) -> "np.ndarray":
-        """(n, 3) float32, metres: the points about which vertices turn in the wind; of no rows without ``wind=True``."""
+        """(n, 3) float32, metres: the points about which vertices rotate in the wind; without rows unless ``wind=True``."""
         return self._column("pivots")
 
     @property
@@ -106,8 +106,8 @@ class Part:
 
     @property
     def maps(self) -> "Dict[str, np.ndarray]":
-        """The textures beside the colour that there are, (height, width, 4) uint8 as glTF has them: ``normal``, ``orm``
-        (occlusion, roughness), ``height``, ``through`` (in alpha, multiplied with the translucency)."""
+        """The textures in addition to the colour, (height, width, 4) uint8 as in glTF: ``normal``, ``orm`` (occlusion,
+        roughness), ``height``, ``through`` (in alpha, multiplied with the translucency)."""
         names = ("normal", "orm", "height", "through")
         return {name: array(self.material[name]) for name in names if self.material[name] is not None}
 
@@ -116,7 +116,7 @@ class Part:
 
 
 class Masks(NamedTuple):
-    """What each pixel of a picture shows."""
+    """Labels of each pixel of a picture."""
 
     part: "np.ndarray"
     """(height, width) int32: row of ``burgeon.PARTS``; -1 for nothing."""
@@ -133,7 +133,7 @@ class Masks(NamedTuple):
 
 
 class Cloud(NamedTuple):
-    """Points on a plant as a scanner sees them, and what each lies on."""
+    """Points on a plant as a scanner measures them, with the labels of each."""
 
     points: "np.ndarray"
     """(n, 3) float64: metres, +y up."""
@@ -148,30 +148,30 @@ class Cloud(NamedTuple):
     order: "np.ndarray"
     """(n,) int32: branching order of the axis, 0 for the trunk."""
     station: "np.ndarray"
-    """(n,) uint8: from which place of the scanner it was seen."""
+    """(n,) uint8: place of the scanner from which it was measured."""
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
     instance: "np.ndarray"
     """(n,) int32: the axis or organ by its number, the same as in pictures (``burgeon.labels``); 0 for none."""
 
     def save(self, path: "str | os.PathLike[str]") -> None:
-        """Writes all columns to a ``.npz`` file (NumPy), or points and labels to ``.las`` or ``.laz`` (laspy): whole or not
+        """Writes all columns to a ``.npz`` file (NumPy), or points and labels to ``.las`` or ``.laz`` (laspy): completely or not
         at all."""
         save_cloud(self._asdict(), path)
 
     def to_bytes(self, extension: str = "npz") -> bytes:
-        """The file of a format, ``npz``, ``las`` or ``laz``: the same bytes for the same cloud."""
+        """Returns the file of a format, ``npz``, ``las`` or ``laz``: the same bytes for the same cloud."""
         return cloud_bytes(self._asdict(), extension)
 
 
 def save_cloud(columns: "Dict[str, np.ndarray]", path: "str | os.PathLike[str]") -> None:
-    """Writes the columns of a cloud, whole or not at all."""
+    """Writes the columns of a cloud, completely or not at all."""
     folder, name = os.path.split(os.fspath(path))
     write_whole(folder, [(name, cloud_bytes(columns, os.path.splitext(name)[1]))])
 
 
 def cloud_bytes(columns: "Dict[str, np.ndarray]", extension: str) -> bytes:
-    """The file of a cloud in a format."""
+    """Returns the file of a cloud in a format."""
     extension = extension.lower().lstrip(".")
     if extension == "npz":
         from ._npz import npz
@@ -186,7 +186,7 @@ def cloud_bytes(columns: "Dict[str, np.ndarray]", extension: str) -> bytes:
 
 
 def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":
-    """The columns of the cloud of a plant or of a forest."""
+    """Returns the columns of the cloud of a plant or of a forest."""
     scan = {
         "points": whole("points", points, 1, 5_000_000),
         "stations": whole("stations", stations, 1, 64),
@@ -199,9 +199,10 @@ def seen(of: Any, points: int, stations: int, elevation: float, noise: float, se
 
 
 def shown(raw: Any, labels: "Sequence[np.ndarray]", start: "np.ndarray", how: "Look") -> "Tuple[np.ndarray, ...]":
-    """What each pixel of a picture of a model shows: part of the model, then what ``labels`` say, then depth and normal.
+    """Returns the labels of each pixel of a picture of a model: part of the model, then those of ``labels``, then depth and
+    normal.
 
-    ``labels``: tables (triangles, 3) one after another; ``start``: of each part of the model the row of its first triangle.
+    ``labels``: tables (triangles, 3) one after another; ``start``: row of the first triangle of each part of the model.
     """
     import numpy as np
 
@@ -216,16 +217,16 @@ Look = Dict[str, Any]
 
 
 USUAL_SIZE = (1024, 768)
-"""Pixels across and down where nothing is said."""
+"""Default pixels across and down."""
 LOOKS = (
     *("view", "azimuth", "elevation", "background", "shadow", "supersample", "seed", "camera", "sun", "sunshine"),
     "skylight",
 )
-"""What may be asked of a picture."""
+"""The settings of a picture."""
 
 
 def look(size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> Look:
-    """How a picture is taken."""
+    """Returns the settings of a picture, checked."""
     keys("a picture", how, LOOKS)
     if "camera" in how:
         if size != USUAL_SIZE or "view" in how:
@@ -272,7 +273,7 @@ def _look(
 
 
 def _towards_sun(sun: "Tuple[float, float]") -> "Tuple[float, float, float]":
-    """The unit vector towards a sun of an azimuth (from north, -z, over east, +x) and an elevation, degrees."""
+    """Returns the unit vector towards a sun of an azimuth (from north, -z, over east, +x) and an elevation, degrees."""
     if isinstance(sun, (str, bytes)) or not hasattr(sun, "__len__") or len(sun) != 2:
         raise TypeError(f"sun must be its azimuth and elevation in degrees, not {sun!r}")
     azimuth = math.radians(number("sun[0]", sun[0], -360, 360, "deg"))
@@ -286,7 +287,7 @@ def _remade(recipe: Recipe) -> "Model":
 
 
 class Model:
-    """Meshes and materials. Nothing changes it."""
+    """Meshes and materials. A model never changes."""
 
     __slots__ = ("_digest", "_parts", "_raw", "_recipe")
 
@@ -297,7 +298,7 @@ class Model:
         self._parts: "Optional[List[Part]]" = None
 
     def __reduce__(self) -> "Tuple[Any, ...]":
-        """A pickle holds what its plant was asked for; it is made again where it is read."""
+        """Pickles the request for its plant, which is made again on reading."""
         if self._recipe is None:
             raise TypeError("the model of a forest cannot be pickled: save it, or pickle its plants")
         return _remade, (self._recipe,)
@@ -309,7 +310,7 @@ class Model:
         return self
 
     def __eq__(self, other: object) -> bool:
-        """The same name, meshes and materials."""
+        """Compares name, meshes and materials."""
         if not isinstance(other, Model):
             return NotImplemented
         return self is other or (self.name == other.name and self.digest == other.digest)
@@ -357,7 +358,7 @@ class Model:
 
     @property
     def vertices(self) -> "np.ndarray":
-        """(n, 3) float32, metres, of all parts: joined, which copies where there are several (``parts`` do not)."""
+        """(n, 3) float32, metres, of all parts: joined, which copies if there are several (``parts`` do not)."""
         return self._joined("vertices", 3, 0.0)
 
     @property
@@ -367,12 +368,12 @@ class Model:
 
     @property
     def uvs(self) -> "np.ndarray":
-        """(n, 2) float32 of all parts; 0 where a part has none."""
+        """(n, 2) float32 of all parts; 0 for parts without any."""
         return self._joined("uvs", 2, 0.0)
 
     @property
     def colors(self) -> "np.ndarray":
-        """(n, 3) float32 of all parts, linear RGB with the materials' colours in it; textures are not."""
+        """(n, 3) float32 of all parts, linear RGB with the materials' colours, but without textures."""
         import numpy as np
 
         own = self._joined("colors", 3, 1.0)
@@ -395,7 +396,7 @@ class Model:
         return np.concatenate(faces)
 
     def to_trimesh(self) -> Any:
-        """A ``trimesh.Scene`` with one geometry for each part, with its texture.
+        """Returns a ``trimesh.Scene`` with one geometry for each part, with its texture.
 
         Needs ``pip install trimesh`` (and Pillow for textures).
         """
@@ -441,7 +442,7 @@ class Model:
         return scene
 
     def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: str = "y") -> None:
-        """Writes ``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda`` or ``.usdz``, whole or not at all.
+        """Writes ``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda`` or ``.usdz``, completely or not at all.
 
         ``unit`` (m, cm, mm) and ``up`` (y, z) are for formats that do not fix them; glTF is in metres, +y up.
         """
@@ -451,32 +452,32 @@ class Model:
         write_whole(folder, self._raw.files(extension[1:].lower(), stem, unit, up))
 
     def to_bytes(self, extension: str = "glb", unit: str = "m", up: str = "y") -> bytes:
-        """The file of a format, without files beside it."""
+        """Returns the file of a format, without companion files."""
         extension = extension.lower().lstrip(".")
         check_axes(extension, unit, up)
         return bytes(self._raw.files(extension, "model", unit, up)[0][1])
 
     def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
-        """A picture: (height, width, 4) uint8, sRGB and alpha, rows from the top.
+        """Renders a picture: (height, width, 4) uint8, sRGB and alpha, rows from the top.
 
-        ``view``: ``front``, ``three-quarter``, ``side``, ``top``, ``turntable`` or ``orbit`` (with ``azimuth`` and
-        ``elevation``, degrees); ``background``: ``sky``, ``transparent``, ``white`` or ``#rrggbb``; ``shadow``;
-        ``supersample``: 1 to 6; ``camera``: a ``burgeon.Camera`` instead of size and view; ``sun``: azimuth from north (-z) over
-        east (+x) and elevation, degrees (it stands beside the viewer); ``sunshine``, ``skylight``: how bright sun and sky are, 0
-        to 4, of the usual 1. The same pixels as ``burgeon render`` makes.
+        ``view``: ``front``, ``three-quarter``, ``side``, ``top``, ``turntable`` or ``orbit`` (with ``azimuth`` and ``elevation``,
+        degrees); ``background``: ``sky``, ``transparent``, ``white`` or ``#rrggbb``; ``shadow``; ``supersample``: 1 to 6;
+        ``camera``: a ``burgeon.Camera`` instead of size and view; ``sun``: azimuth from north (-z) over east (+x) and elevation,
+        degrees (default: next to the viewer); ``sunshine``, ``skylight``: brightness of sun and sky, 0 to 4, default 1. The
+        pixels are those of ``burgeon render``.
         """
         return array(self._raw.render(look(size, **how)))
 
     def to_png(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> bytes:
-        """The same as a PNG file."""
+        """Renders the same as a PNG file."""
         pixels = self.render(size, **how)
         height, width, _ = pixels.shape
         return bytes(_burgeon.png(width, height, pixels.tobytes()))
 
     def to_html(self, height: int = 480) -> str:
-        """A 3-D view as HTML that needs nothing else, on the Studio's stage: drag to turn, wheel or pinch to come nearer.
+        """Returns a self-contained 3-D view as HTML, on the Studio's stage: drag to turn, wheel or pinch to come nearer.
 
-        ``RuntimeError`` in a copy that was not installed from a wheel, which holds the stage.
+        Raises ``RuntimeError`` in a copy that was not installed from a wheel, which includes the stage.
         """
         from ._view import page
 
@@ -502,5 +503,5 @@ def _srgb(linear: "np.ndarray") -> "np.ndarray":
 
 
 def joined(columns: "Sequence[Any]") -> "List[np.ndarray]":
-    """Columns of the core as arrays."""
+    """Returns columns of the core as arrays."""
     return [array(c) for c in columns]

@@ -1,4 +1,4 @@
-"""Plants: tables, measures, clouds, files, and other plants that follow from them."""
+"""Plants: tables, measures, clouds, files, and plants derived from them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["Axes", "Nodes", "Organs", "Plant"]
 
 
 class _Table:
-    """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""
+    """Columns of one length. They use the memory of the core, which they keep alive; they are read-only."""
 
     __slots__ = ("_known", "_raw")
     _prefix = ""
@@ -42,7 +42,7 @@ class _Table:
         return self._known[name]
 
     def to_dict(self) -> "Dict[str, np.ndarray]":
-        """All columns by name, for ``pandas.DataFrame`` and the like."""
+        """Returns all columns by name, for ``pandas.DataFrame`` and the like."""
         out: "Dict[str, np.ndarray]" = {}
         for name in self._columns:
             column = self._column(name)
@@ -60,7 +60,7 @@ class _Table:
 
 
 class Nodes(_Table):
-    """Where axes go: one row a node, those of an axis in a row, base first. Shown without a copy."""
+    """Points of axes: one row a node, those of an axis in a row, base first. Shown without a copy."""
 
     __slots__ = ()
     _prefix = "node"
@@ -83,11 +83,11 @@ class Nodes(_Table):
 
 
 class Axes(_Table):
-    """Trunks, branches, stems, stalks, roots: one row each, after what bears it."""
+    """Trunks, branches, stems, stalks, roots: one row each, after their bearers."""
 
     __slots__ = ()
     _prefix = "axis"
-    _columns = ("part", "order", "parent", "bearer", "first", "end", "stroke")
+    _columns = ("part", "order", "parent", "bearer", "first", "end", "length", "angle", "stroke")
 
     @property
     def part(self) -> "np.ndarray":
@@ -120,8 +120,18 @@ class Axes(_Table):
         return self._column("end")
 
     @property
+    def length(self) -> "np.ndarray":
+        """(n,) float64: from node to node, metres."""
+        return self._column("length")
+
+    @property
+    def angle(self) -> "np.ndarray":
+        """(n,) float64: between its first internode and the one that bears it, degrees; NaN for those on the ground."""
+        return self._column("angle")
+
+    @property
     def stroke(self) -> "np.ndarray":
-        """(n,) int32: the stroke that it was read from; -1 for what the program grew."""
+        """(n,) int32: the stroke from which it was read; -1 if the program grew it."""
         return self._column("stroke")
 
 
@@ -130,7 +140,7 @@ class Organs(_Table):
 
     __slots__ = ()
     _prefix = "organ"
-    _columns = ("part", "position", "along", "normal", "scale", "bearer", "flower", "shape", "stroke")
+    _columns = ("part", "position", "along", "normal", "scale", "area", "bearer", "flower", "shape", "stroke")
 
     @property
     def part(self) -> "np.ndarray":
@@ -139,7 +149,7 @@ class Organs(_Table):
 
     @property
     def position(self) -> "np.ndarray":
-        """(n, 3) float64: where it is rooted, metres."""
+        """(n, 3) float64: its root, metres."""
         return self._column("position")
 
     @property
@@ -158,6 +168,11 @@ class Organs(_Table):
         return self._column("scale")
 
     @property
+    def area(self) -> "np.ndarray":
+        """(n,) float64: one side of it as it is bent, square metres; half of the surface of round organs."""
+        return self._column("area")
+
+    @property
     def bearer(self) -> "np.ndarray":
         """(n,) int32: row of ``plant.nodes``; -1 for none."""
         return self._column("bearer")
@@ -169,17 +184,17 @@ class Organs(_Table):
 
     @property
     def shape(self) -> "np.ndarray":
-        """(n,) uint32: organs of one shape have one number."""
+        """(n,) uint32: number of its shape."""
         return self._column("shape")
 
     @property
     def stroke(self) -> "np.ndarray":
-        """(n,) int32: the stroke that it was read from; -1 for what the program placed."""
+        """(n,) int32: the stroke from which it was read; -1 if the program placed it."""
         return self._column("stroke")
 
 
 class Plant:
-    """A plant of any maker. Nothing changes it: ``shape`` and ``at`` give others. Threads may share it."""
+    """A plant of any maker. A plant never changes: ``shape`` and ``at`` return others. Threads may share it."""
 
     __slots__ = ("_known", "_raw", "_recipe")
 
@@ -189,12 +204,12 @@ class Plant:
         self._known: "Dict[str, Any]" = {}
 
     def _then(self, function: str, *arguments: Any) -> "Plant":
-        """The plant that a method of this one's makes."""
+        """Returns the plant that a method of this one makes."""
         then = recipe(function, *arguments, before=self._recipe)
         return Plant(then, then.of(self._raw))
 
     def __reduce__(self) -> "Tuple[Any, ...]":
-        """A pickle holds what the plant was asked for; it is made again where it is read."""
+        """Pickles the request for the plant, which is made again on reading."""
         return Plant, (self._recipe,)
 
     def __copy__(self) -> "Plant":
@@ -204,7 +219,7 @@ class Plant:
         return self
 
     def __eq__(self, other: object) -> bool:
-        """The same plant: name, seed, place, structure and meshes."""
+        """Compares name, seed, place, structure and meshes."""
         if not isinstance(other, Plant):
             return NotImplemented
         return self is other or (self._marks() == other._marks() and self.model == other.model)
@@ -227,7 +242,7 @@ class Plant:
 
     @property
     def seed(self) -> int:
-        """What all chance follows from."""
+        """The seed of all random numbers."""
         return self._raw.seed
 
     @property
@@ -242,50 +257,64 @@ class Plant:
 
     @property
     def report(self) -> "Dict[str, Any]":
-        """Its entry of the command line's report: counts, times, warnings, what was understood."""
+        """Its entry of the command line's report: counts, times, warnings, and the reading of a drawing."""
         return self._keep("report", lambda: json.loads(self._raw.report()))
 
     @property
     def warnings(self) -> "List[str]":
-        """What a person should know of how it was made."""
+        """Warnings of its making."""
         return list(self.report.get("warnings", []))
 
     @property
     def checks(self) -> "List[Dict[str, Any]]":
-        """What was checked of it: ``name``, ``value``, ``bound``, ``side``, ``ok``, ``severity``, ``message``, ``advice``."""
+        """Checks of it: ``name``, ``value``, ``bound``, ``side``, ``ok``, ``severity``, ``message``, ``advice``."""
         return list(self.report.get("checks", []))
 
     @property
     def spec(self) -> "Dict[str, Any]":
-        """All that its maker was asked for, defaults too."""
+        """All options of its maker, including defaults."""
         return json.loads(self._raw.spec())
 
     @property
     def place(self) -> "Tuple[Tuple[float, float, float], float, float]":
-        """Where it stands in the project that it was opened from, or stood in its scan: position in metres, turn about +y in
-        degrees, scale."""
+        """Its place in the project from which it was opened, or in its scan: position in metres, rotation about +y in degrees,
+        scale."""
         position, yaw, scale = self._raw.place
         return (position[0], position[1], position[2]), yaw, scale
 
     @property
     def found(self) -> "Optional[Dict[str, Any]]":
-        """Of a scanned tree, what became of the points: ``points``, ``ground``, ``noise``, ``wood``, ``leaves``, ..."""
+        """Counts of the points of a scanned tree: ``points``, ``ground``, ``noise``, ``wood``, ``leaves``, ..."""
         found = self._raw.found
         return None if found is None else json.loads(found)
 
     @property
     def front(self) -> "Optional[Tuple[float, Tuple[float, float]]]":
-        """Of a drawing: metres for each of its units, and the point (x, y, y upwards) of it at which the plant stands.
+        """For a drawing: metres for each of its units, and the point (x, y, y upwards) of it at which the plant stands.
 
         The front view of the model is the drawing: ``plant_xy = (drawing_xy - point) * metres``.
         """
         front = self._raw.front
         return None if front is None else (front[0], (front[1][0], front[1][1]))
 
-    def measures(self) -> "Dict[str, Any]":
-        """What can be measured, in SI units (docs/measures.md): ``height_m``, ``dbh_m``, ``leaf_area_m2`` and so on.
+    def leaf_area_by_layer(self, layer: float = 1.0) -> "np.ndarray":
+        """Returns the area of one side of the leaves in each layer, lowest first, square metres.
 
-        None stands for what this plant does not have, such as a diameter at breast height below 1.3 m.
+        ``layer``: thickness of a layer, metres, 0.001 to 1000; the first begins at y = 0, and leaves that are lower count to it.
+        A leaf counts to the layer of its root.
+        """
+        import numpy as np
+
+        layer = number("layer", layer, 0.001, 1000, "m")
+        organs = self.organs
+        leaves = organs.part == PARTS.index("leaf")
+        rows = np.maximum(np.floor(organs.position[leaves, 1] / layer), 0).astype(np.int64)
+        return np.bincount(rows, weights=organs.area[leaves])
+
+    def measures(self) -> "Dict[str, Any]":
+        """Returns all measures, in SI units (docs/measures.md): ``height_m``, ``dbh_m``, ``leaf_area_m2`` and so on.
+
+        None stands for a measure that this plant lacks, such as a diameter at breast height below 1.3 m.
         """
         return json.loads(self._raw.measures())
 
@@ -324,14 +353,14 @@ class Plant:
         return self._keep("model", lambda: Model(self._raw.model(), recipe("model", before=self._recipe)))
 
     def level(self, level: int) -> Model:
-        """Coarser meshes for far away, 1 to 6: about half of the triangles with each level."""
+        """Returns coarser meshes for views from far away, 1 to 6: about half of the triangles with each level."""
         level = whole("level", level, 0, 6)
         if level == 0:
             return self.model
         return Model(self._raw.level(level), recipe("level", level, before=self._recipe))
 
     def labels(self) -> "List[np.ndarray]":
-        """Of each part of ``model`` what its triangles lie on: (triangles, 3) int32 of part, axis, organ.
+        """Returns the labels of the triangles of each part of ``model``: (triangles, 3) int32 of part, axis, organ.
 
         Rows of ``burgeon.PARTS``, ``axes`` and ``organs``; -1 for none.
         """
@@ -345,42 +374,43 @@ class Plant:
         noise: float = 0.0,
         seed: "Optional[int]" = None,
     ) -> Cloud:
-        """The plant as a scanner sees it: what a beam meets first is a point, what lies behind it is hidden.
+        """Scans the plant: the first surface that a beam meets gives a point, surfaces behind it are hidden.
 
-        ``points``: 1 to 5 million; ``stations``: places of the scanner, evenly around the plant, 1 to 64;
-        ``elevation``: how far above the horizon of its middle they stand, degrees, -80 to 80; ``noise``: standard
-        deviation of the distance, metres, 0 to 1; ``seed``: of the choice of points and of noise (the plant's).
+        ``points``: 1 to 5 million; ``stations``: places of the scanner, evenly around the plant, 1 to 64; ``elevation``: their
+        angle above the horizon of its centre, degrees, -80 to 80; ``noise``: standard deviation of the distance, metres, 0 to 1;
+        ``seed``: that of the choice of points and of noise (the plant's).
         """
         columns = seen(self, points, stations, elevation, noise, seed)
         return Cloud(**columns, instance=self._instance(columns["axis"], columns["organ"]))
 
     def _instance(self, axis: "np.ndarray", organ: "np.ndarray") -> "np.ndarray":
-        """Numbers of instances (``burgeon.labels``) of rows of axes and organs."""
+        """Returns numbers of instances (``burgeon.labels``) for rows of axes and organs."""
         import numpy as np
 
         return np.where(organ >= 0, organ + (1 + len(self.axes)), axis + 1).astype(np.int32)
 
     def light(self, **how: "Unpack[Lighting]") -> Light:
-        """What each of its axes and organs absorbs of photosynthetically active light (``burgeon light``).
+        """Computes the photosynthetically active light that each of its axes and organs absorbs (``burgeon light``).
 
         ``sky``: ``overcast``, ``uniform`` or ``clear``; ``diffuse``, ``direct``: PAR of sky and sun on level ground, W/m2, 0 to
-        2000; ``sun``: azimuth from north (-z) over east (+x) and elevation, degrees; or ``place`` (latitude, longitude,
-        metres) with ``date``, ``hour`` (12), ``zone``, ``turbidity`` (1 to 10) or ``daily``, the sum of the day;
-        ``sky_table``: rows of azimuth, elevation and W/m2; ``repeat``: width and depth of a cell that repeats itself without
-        end, metres; ``leaf``: reflectance and transmittance; ``wood``, ``soil``: reflectance; ``bounces``: 0 to 50; ``rays``:
-        lines of light in each direction, 1000 to 4194304. What is not given is as of the command (docs/light.md).
+        2000; ``sun``: azimuth from north (-z) over east (+x) and elevation, degrees; or ``place`` (latitude, longitude, metres)
+        with ``date``, ``hour`` (12), ``zone``, ``turbidity`` (1 to 10) or ``daily``, the sum of the day; ``sky_table``: rows of
+        azimuth, elevation and W/m2; ``repeat``: width and depth of a cell that repeats itself without end, metres; ``leaf``:
+        reflectance and transmittance; ``wood``, ``soil``: reflectance; ``bounces``: 0 to 50; ``rays``: lines of light in each
+        direction, 1000 to 4194304. Defaults are those of the command (docs/light.md).
         """
         return lit(self._raw, **how)
 
     def drawing(self) -> Drawing:
-        """What a person would have drawn of it, seen from the front: stems, outlines of leaves and petals, or the crown.
+        """Returns a line drawing of it, as a person would draw it from the front: stems, outlines of leaves and petals, or the
+        crown.
 
         ``plant.drawing().save("x.svg")`` writes it; ``sketch`` reads it.
         """
         return draw(self._raw)
 
     def masks(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> Masks:
-        """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
+        """Returns the labels of each pixel of ``render(size, **how)`` at its centre: part, axis, organ and depth."""
         import numpy as np
 
         labels = self.labels()
@@ -389,11 +419,12 @@ class Plant:
         return Masks(part, axis, organ, depth, normal, self._instance(axis, organ))
 
     def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
-        """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""
+        """Returns the branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``,
+        ..."""
         return json.loads(self._raw.branches(whole("order", order, 0, 1000)))
 
     def shape(self, edits: "str | os.PathLike[str] | Dict[str, Any] | Iterable[Dict[str, Any]]") -> "Plant":
-        """The plant after edits by hand: an edits file (``burgeon shape --template``), its content, or its list.
+        """Returns the plant after edits by hand: an edits file (``burgeon shape --template``), its content, or its list.
 
         >>> short = oak.shape([{"op": "prune", "axis": {"path": [0, 0]}, "at": 0.5}])  # doctest: +SKIP
         """
@@ -407,7 +438,7 @@ class Plant:
         return self._then("shape", list(edits))
 
     def at(self, day: float) -> "Plant":
-        """The plant on another day, 0 (bud) to 100: of flowers, and of drawings whose flowers then open."""
+        """Returns the plant on another day, 0 (bud) to 100: for flowers, and for drawings whose flowers then open."""
         return self._then("at", number("day", day, 0, 100, "d"))
 
     def again(
@@ -421,10 +452,11 @@ class Plant:
         wind: "Optional[bool]" = None,
         **fields: Any,
     ) -> "Plant":
-        """The plant of other settings; what is not given stays, and so do edits by hand, materials, obstacles and place.
+        """Returns the plant with other settings; missing ones stay, and so do edits by hand, materials, obstacles and place.
 
-        ``fields``: of its maker, as ``schema(plant.maker)`` has them: ``tree.again(age=12, leaves={"leaf_keep": 0.5})``. Also of
-        the plants of a project (``open``). ``detail``, ``sides``, ``textures``: of trees and drawings; ``day``: of flowers.
+        ``fields``: those of its maker, as in ``schema(plant.maker)``: ``tree.again(age=12, leaves={"leaf_keep": 0.5})``. It also
+        works for the plants of a project (``open``). ``detail``, ``sides``, ``textures``: for trees and drawings; ``day``: for
+        flowers.
         """
         skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
         asked = asked_of(1 if seed is None else seed, 1.0, fields, skin)
@@ -433,13 +465,13 @@ class Plant:
 
     @property
     def days(self) -> "Optional[Tuple[float, float]]":
-        """Days from bud to full bloom, and from there to wilted; None for what has no days."""
+        """Days from bud to full bloom, and from there to wilted; None for plants without days."""
         days = self._raw.days
         return None if days is None else tuple(days)
 
     @property
     def day(self) -> "Optional[float]":
-        """The day of a flower, or of a drawing whose flowers open; None for what has none."""
+        """The day of a flower, or of a drawing whose flowers open; None for others."""
         return self._raw.day
 
     @property
@@ -449,7 +481,7 @@ class Plant:
         return None if surface is None else surface[0]
 
     def mtg(self, up: str = "z", unit: str = "m") -> Any:
-        """Its structure as ``openalea.mtg.MTG`` if that is installed, else as the text of an ``.mtg`` file.
+        """Returns its structure as ``openalea.mtg.MTG`` if that is installed, else as the text of an ``.mtg`` file.
 
         As text with openalea.mtg installed: ``plant.to_bytes("mtg")``.
         """
@@ -461,8 +493,8 @@ class Plant:
         return read_mtg(text)
 
     def to_bytes(self, extension: str, unit: str = "m", up: "Optional[str]" = None) -> bytes:
-        """The file of a format: models, ``mtg``, ``opf``, ``qsm`` (a table of cylinders), ``swc`` (a skeleton), ``burgeon`` (a
-        project).
+        """Returns the file of a format: models, ``mtg``, ``opf``, ``qsm`` (a table of cylinders), ``swc`` (a skeleton),
+        ``burgeon`` (a project).
         """
         extension = extension.lower().lstrip(".")
         if extension in STRUCTURES:
@@ -475,22 +507,26 @@ class Plant:
     def save(
         self,
         path: "str | os.PathLike[str]",
-        unit: str = "m",
+        unit: "Optional[str]" = None,
         up: "Optional[str]" = None,
         *,
-        lods: int = 0,
+        engine: "Optional[str]" = None,
+        lods: "Optional[int]" = None,
         one_file: bool = False,
         instances: bool = False,
         impostor: "Optional[int]" = None,
         pack: "Optional[str]" = None,
         sway: bool = False,
-    ) -> None:
+    ) -> "Tuple[str, ...]":
         """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``,
-        ``.swc``), its cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all.
+        ``.swc``), its cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): completely or not at all.
 
         Of models: ``lods`` coarser copies, 0 to 6, beside it (``x-lod1.glb``, ...); ``impostor``: one more, views from all sides
         in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of
         leaf once; ``pack``: ``quantized`` or ``meshopt``; ``sway``: joints with an animation (docs/exports.md).
+
+        ``engine``: ``three``, ``blender``, ``unity``, ``unreal``, ``godot``, ``isaac`` or ``print`` sets what is left open as the
+        importer of that program takes it (docs/engines). What was set is returned, as options of ``burgeon``.
         """
         folder, name = os.path.split(os.fspath(path))
         stem, dotted = os.path.splitext(name)
@@ -498,7 +534,8 @@ class Plant:
         if name.lower().endswith(".qsm.csv"):
             extension = "qsm"
         form = {
-            "lods": whole("lods", lods, 0, 6),
+            "engine": None if engine is None else word("engine", engine),
+            "lods": 0 if lods is None else whole("lods", lods, 0, 6),
             "one_file": flag("one_file", one_file),
             "instances": flag("instances", instances),
             "impostor": None if impostor is None else whole("impostor", impostor, 128, 4096),
@@ -509,14 +546,17 @@ class Plant:
             asked = [word for word, value in form.items() if value not in (0, False, None)]
             if asked:
                 raise wrong(f"{asked[0]} is of models, not of .{extension} files", asked[0], "given", "left out")
-            write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
-        else:
-            check_axes(extension, unit, up)
-            files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
-            write_whole(folder, [(name, files[0][1]), *files[1:]])
+            write_whole(folder, [(name, self.to_bytes(extension, unit or "m", up))])
+            return ()
+        check_axes(extension, unit or "m", up)
+        axes = {"unit": word("unit", unit or "m"), "up": word("up", up or "y"), "names": False}
+        given = [unit is not None, up is not None, lods is not None]
+        files, settings = self._raw.files(extension, stem, {**axes, "given": given, **form})
+        write_whole(folder, [(name, files[0][1]), *files[1:]])
+        return tuple(settings)
 
     def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
-        """A picture: see ``Model.render``."""
+        """Renders a picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
     def _repr_png_(self) -> bytes:
@@ -528,7 +568,7 @@ class Plant:
         return self.to_html() if can_show() else None
 
     def to_html(self, height: int = 480) -> str:
-        """A 3-D view as HTML that needs nothing else: see ``Model.to_html``; of a large plant with coarser meshes."""
+        """Returns a self-contained 3-D view as HTML: see ``Model.to_html``; a large plant has coarser meshes there."""
         from ._view import MOST_TRIANGLES
 
         level = 0
@@ -544,4 +584,4 @@ class Plant:
 
 
 PARTS: "Tuple[str, ...]" = tuple(_burgeon.PARTS)
-"""What a point, triangle, axis or organ is, by the number that is its ``part``."""
+"""Words for points, triangles, axes and organs, by their number ``part``."""

@@ -33,7 +33,7 @@ KINDS = {
     },
 }
 SAMPLE = 4000
-"""Points of each plant that are learnt from, or told."""
+"""Points of each plant for training, or for prediction."""
 NEIGHBOURS = (15, 50, 150)
 """Points of the neighbourhoods, small to large."""
 LEAF = [bg.PARTS.index(name) for name in ("leaf", "petal", "sepal")]
@@ -41,9 +41,10 @@ TOMATO = pathlib.Path(__file__).resolve().parents[3] / "../shared/data/scans/tom
 
 
 def features(points, seed=0):
-    """Of a sample of points the form of its neighbourhoods: lines, planes or balls, and how they stand. Scale does not matter.
+    """Returns the form of the neighbourhoods of a sample of points: how far they are lines, planes or balls, and their
+    directions.
 
-    Also returns the rows of the sample.
+    The features do not depend on scale. Also returns the rows of the sample.
     """
     near = NearestNeighbors(n_neighbors=max(NEIGHBOURS)).fit(points)
     sample = np.random.default_rng(seed).permutation(len(points))[:SAMPLE]

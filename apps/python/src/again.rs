@@ -1,4 +1,4 @@
-//! A plant with other settings: what else was done to it stays.
+//! A plant with other settings; its other edits stay.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use crate::fault::{unusable, wrong};
 use crate::held::Held;
 
 impl Held {
-    /// The plant of other settings, with its edits by hand, materials, classes of strokes, obstacles and place. `seeded`: the
-    /// seed that is asked for is meant.
+    /// Returns the plant with other settings, and with its edits by hand, materials, classes of strokes, obstacles
+    /// and place. `seeded`: the request gives the seed.
     pub(crate) fn again(
         &self,
         py: Python<'_>,
@@ -26,7 +26,7 @@ impl Held {
         let id = self.id;
         let mut commands = Vec::new();
         if seeded {
-            commands.push(PlantCommand::SetSeed(asked.seed()).of(id));
+            commands.push(PlantCommand::SetSeed(asked.seed()).for_plant(id));
         }
         let surface = |base: &SkinSpec| asked.skin_on(py, base);
         let wind = match self.maker() {
@@ -35,31 +35,32 @@ impl Held {
                 let spec = asked.spec(py, &burgeon::tree_spec(tree))?;
                 let (skin, wind) = surface(&tree.skin)?;
                 let made = burgeon::tree_settings(&spec, tree.preset.as_deref());
-                commands.push(TreeCommand::SetSpec(made.preset.clone(), Arc::clone(&made.spec)).of(id));
-                commands.extend(obstacles(tree, &made).into_iter().map(|c| c.of(id)));
-                commands.push(TreeCommand::SetSkin(skin).of(id));
+                commands
+                    .push(TreeCommand::SetSpec(made.preset.clone(), Arc::clone(&made.spec)).for_plant(id));
+                commands.extend(obstacles(tree, &made).into_iter().map(|c| c.for_plant(id)));
+                commands.push(TreeCommand::SetSkin(skin).for_plant(id));
                 wind
             }
             Some(Maker::Sketch(sketch)) => {
                 let spec = asked.spec(py, &sketch.sketch)?;
                 let (skin, wind) = surface(&sketch.skin)?;
-                commands.push(SketchCommand::SetSketch(Box::new(spec)).of(id));
-                commands.push(SketchCommand::SetSkin(skin).of(id));
-                commands.extend(day.map(|day| SketchCommand::SetDay(Some(day)).of(id)));
+                commands.push(SketchCommand::SetSketch(Box::new(spec)).for_plant(id));
+                commands.push(SketchCommand::SetSkin(skin).for_plant(id));
+                commands.extend(day.map(|day| SketchCommand::SetDay(Some(day)).for_plant(id)));
                 wind
             }
             Some(Maker::Flower(flower)) => {
                 let spec = asked.spec(py, &*flower.spec)?;
                 let wind = plain(asked, py)?;
-                commands.push(FlowerCommand::SetSpec(flower.preset.clone(), Arc::new(spec)).of(id));
-                commands.extend(day.map(|day| FlowerCommand::SetDay(day).of(id)));
+                commands.push(FlowerCommand::SetSpec(flower.preset.clone(), Arc::new(spec)).for_plant(id));
+                commands.extend(day.map(|day| FlowerCommand::SetDay(day).for_plant(id)));
                 wind
             }
             Some(Maker::Leaf(leaf)) => {
                 dayless(day, "leaf")?;
                 let spec = asked.spec(py, &leaf.settings)?;
                 let wind = plain(asked, py)?;
-                commands.push(LeafCommand::Set(Box::new(spec)).of(id));
+                commands.push(LeafCommand::Set(Box::new(spec)).for_plant(id));
                 wind
             }
             _ => return Err(unusable(py, &"this plant has no settings")),
@@ -73,7 +74,7 @@ fn dayless(day: Option<f64>, maker: &str) -> PyResult<()> {
     day.map_or(Ok(()), |day| Err(wrong(&line, "day", &day.to_string(), "left out")))
 }
 
-/// The wind of what has no other choice of how it is meshed.
+/// Returns the wind option of a plant that has no other options of meshing.
 fn plain(asked: &Asked<'_>, py: Python<'_>) -> PyResult<Option<bool>> {
     let (skin, wind) = asked.skin_on(py, &SkinSpec::default())?;
     if skin == SkinSpec::default() {
@@ -82,7 +83,7 @@ fn plain(asked: &Asked<'_>, py: Python<'_>) -> PyResult<Option<bool>> {
     Err(unusable(py, &"detail, sides, textures and foliage are of trees and drawings"))
 }
 
-/// What makes the obstacles of a tree those of another.
+/// Returns the commands that replace the obstacles of a tree by those of another.
 fn obstacles(from: &TreeSettings, to: &TreeSettings) -> Vec<TreeCommand> {
     let same = from.obstacles.iter().map(|o| &o.shape).eq(to.obstacles.iter().map(|o| &o.shape));
     if same {

@@ -1,4 +1,4 @@
-//! What all makers are asked for: a seed, fields of a spec, how to mesh.
+//! Options of all makers: a seed, fields of a spec, meshing.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::fault::{beyond, refused, unusable};
 use crate::held::{Held, run};
 use crate::value::json_of;
 
-/// What all makers are asked for.
+/// Options of all makers.
 #[derive(FromPyObject)]
 pub(crate) struct Asked<'py> {
     #[pyo3(item)]
@@ -25,13 +25,13 @@ pub(crate) struct Asked<'py> {
     /// Fields of the maker's spec.
     #[pyo3(item)]
     fields: Bound<'py, PyDict>,
-    /// Fields of how it is meshed, and `wind`.
+    /// Fields of the meshing, and `wind`.
     #[pyo3(item)]
     skin: Bound<'py, PyDict>,
 }
 
 impl Asked<'_> {
-    /// A spec with the fields that are asked for in the place of its own.
+    /// Returns a spec with the requested fields.
     pub(crate) fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
         if self.fields.is_empty() {
             return burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e));
@@ -44,7 +44,7 @@ impl Asked<'_> {
         Ok((skin, wind.unwrap_or(false)))
     }
 
-    /// [`skin_on`] of what is asked for.
+    /// Calls [`skin_on`] with the requested fields.
     pub(crate) fn skin_on(&self, py: Python<'_>, base: &SkinSpec) -> PyResult<(SkinSpec, Option<bool>)> {
         skin_on(py, &self.skin, base)
     }
@@ -72,12 +72,12 @@ impl Asked<'_> {
         Held::make(py, scene, document, id, self.budget)
     }
 
-    /// The only plant of a document.
+    /// Makes the only plant of a document.
     pub(crate) fn alone(&self, py: Python<'_>, name: &str, maker: Maker, wind: bool) -> PyResult<Arc<Held>> {
         self.bearing(py, name, maker, None, wind)
     }
 
-    /// The only plant of a document, but for one that is hidden and whose leaf it bears.
+    /// Makes the only visible plant of a document; a hidden one may lend it its leaf.
     pub(crate) fn bearing(
         &self,
         py: Python<'_>,
@@ -97,7 +97,7 @@ impl Asked<'_> {
         let lender = leaf.map(|leaf| add(Settings { hidden: true, ..leaf })).transpose()?;
         let id = add(Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() })?;
         if lender.is_some() {
-            run(py, &mut editor, TreeCommand::SetLeaf(lender).of(id))?;
+            run(py, &mut editor, TreeCommand::SetLeaf(lender).for_plant(id))?;
         }
         run(py, &mut editor, SceneCommand::Rename(name.to_owned()).into())?;
         if !sheet.is_empty() {
@@ -107,15 +107,14 @@ impl Asked<'_> {
     }
 }
 
-/// How a plant is meshed, with what is asked for in the place of `base`'s; whether it has columns for wind, if that is
-/// said.
+/// Returns the meshing of `base` with the requested fields, and the wish for wind columns, if there is one.
 pub(crate) fn skin_on(
     py: Python<'_>,
     asked: &Bound<'_, PyDict>,
     base: &SkinSpec,
 ) -> PyResult<(SkinSpec, Option<bool>)> {
     let mut fields = json_of(asked.as_any(), "")?;
-    // What a schema of saved fields does not have.
+    // Fields that the schema of saved fields does not have.
     let mut unsaved = |name: &str| fields.as_object_mut().and_then(|f| f.remove(name));
     let wind = match unsaved("wind") {
         None => None,
@@ -139,7 +138,7 @@ pub(crate) fn skin_on(
     Ok((skin, wind))
 }
 
-/// A spec with some fields in the place of its own, all within their ranges.
+/// Returns a spec with some fields replaced, all within their ranges.
 fn put<T: Spec>(py: Python<'_>, base: &T, fields: Value) -> PyResult<T> {
     burgeon::spec::with_fields(base, fields).map_err(|e| refused(py, &e))
 }

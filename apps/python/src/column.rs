@@ -1,4 +1,4 @@
-//! Memory of ours that `NumPy` shows: no copy, read-only, kept as long as an array looks at it.
+//! Memory of ours for `NumPy`: no copy, read-only, kept as long as an array uses it.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -8,10 +8,10 @@ use burgeon::plant::AxisId;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// What keeps the memory.
+/// Owner of the memory.
 pub(crate) type Owner = Arc<dyn Any + Send + Sync>;
 
-/// A row as `NumPy`'s interface of arrays describes it: numbers in a row (1 for a plain one), and their type.
+/// Layout of a row for `NumPy`'s array interface: the count of its numbers (1 for a plain one), and their type.
 pub(crate) trait Row: 'static {
     const WIDTH: usize;
     const TYPE: &'static str;
@@ -52,7 +52,7 @@ const _: () = assert!(size_of::<AxisId>() == size_of::<u32>(), "a handle is its 
 /// A column of a table or mesh, for `numpy.asarray`.
 #[pyclass(frozen, module = "burgeon._burgeon")]
 pub(crate) struct Column {
-    /// Where the rows are is known as long as it is kept.
+    /// Keeps the rows at their address.
     _owner: Owner,
     address: usize,
     shape: Vec<usize>,
@@ -60,20 +60,20 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// Rows of what `owner` keeps, which nothing changes.
-    pub(crate) fn of<T: Row>(owner: Owner, rows: &[T]) -> Self {
+    /// Returns a column of rows that `owner` keeps and nothing changes.
+    pub(crate) fn from_rows<T: Row>(owner: Owner, rows: &[T]) -> Self {
         let shape = if T::WIDTH == 1 { vec![rows.len()] } else { vec![rows.len(), T::WIDTH] };
         Self { _owner: owner, address: rows.as_ptr().expose_provenance(), shape, kind: T::TYPE }
     }
 
-    /// Rows that were made for it.
+    /// Returns a column that owns its rows.
     pub(crate) fn new<T: Row + Send + Sync>(rows: Vec<T>) -> Self {
         let owner = Arc::new(rows);
         let kept: Owner = owner.clone();
-        Self::of(kept, &owner)
+        Self::from_rows(kept, &owner)
     }
 
-    /// The same numbers with another shape of as many.
+    /// Returns the same numbers in another shape of the same size.
     pub(crate) fn shaped(mut self, shape: &[usize]) -> Self {
         debug_assert_eq!(
             shape.iter().product::<usize>(),
@@ -87,7 +87,7 @@ impl Column {
 
 #[pymethods]
 impl Column {
-    /// Version 3 of the interface: where the rows are, that they are read only, and of which form.
+    /// Returns version 3 of the interface: address, read-only flag, shape and type.
     #[getter(__array_interface__)]
     fn interface<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! Threads, Ctrl-C and limits: what the core leaves to its shell.
+//! Threads, Ctrl-C and limits: the duties of a shell.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -11,13 +11,13 @@ use rayon::prelude::*;
 
 use crate::fault::beyond;
 
-/// Threads to compute with; 0 for as many as the machine has.
+/// Number of threads; 0 for as many as the machine has.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
-/// The pool, by process and number of threads: threads do not come along into a process that is forked off.
+/// The pool, by process and number of threads: a forked process does not inherit the threads.
 static POOL: Mutex<Option<(u32, usize, Arc<rayon::ThreadPool>)>> = Mutex::new(None);
 
-/// Independent jobs on a number of threads.
+/// Runs independent jobs on a number of threads.
 struct Threads(Option<Arc<rayon::ThreadPool>>);
 
 impl Threads {
@@ -35,7 +35,7 @@ impl Threads {
         {
             return Self(Some(Arc::clone(pool)));
         }
-        // A pool of another process has no threads that could end: it is left alone.
+        // A pool of another process has no threads that could end: it is leaked.
         if let Some((process, _, old)) = pool.take().filter(|p| p.0 != own.0) {
             debug_assert_ne!(process, own.0, "another process's");
             std::mem::forget(old);
@@ -78,7 +78,7 @@ pub(crate) fn compute<T: Send>(
         let (over, ended) = sync_channel::<()>(1);
         let own = token.clone();
         let thread = scope.spawn(move || {
-            // Told when it is dropped, by a panic, too.
+            // The drop signals the end, also after a panic.
             let _over = over;
             work(&Run { cancel: &own, executor: &threads, clock: &clock, budget })
         });
@@ -91,8 +91,8 @@ pub(crate) fn compute<T: Send>(
     })
 }
 
-/// Does what nothing can stop (files are written and read, tables filled) without Python's lock. Ctrl-C does not wait for
-/// it: what it makes is dropped when it is done.
+/// Does uninterruptible work (files are written and read, tables filled) without Python's lock. Ctrl-C does not wait
+/// for it: its result is dropped when it is done.
 pub(crate) fn aside<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -106,7 +106,7 @@ pub(crate) fn aside<T: Send + 'static>(
     py.detach(|| thread.join()).map_err(|payload| bug(payload.as_ref()))
 }
 
-/// Waits until a thread drops what it tells its end with; Ctrl-C is an error at once.
+/// Waits until a thread drops its end of the channel; Ctrl-C raises an error at once.
 fn wait(py: Python<'_>, ended: Receiver<()>) -> PyResult<()> {
     let ended = Mutex::new(ended);
     let next = || ended.lock().map_or(Err(RecvTimeoutError::Disconnected), |e| e.recv_timeout(TICK));
@@ -116,17 +116,17 @@ fn wait(py: Python<'_>, ended: Receiver<()>) -> PyResult<()> {
     Ok(())
 }
 
-/// Of a thread that panicked.
+/// Returns the error for a thread that panicked.
 fn bug(payload: &(dyn std::any::Any + Send)) -> PyErr {
     let text = payload.downcast_ref::<&str>().map(|t| (*t).to_owned());
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
     pyo3::exceptions::PyRuntimeError::new_err(format!("internal error, a bug in burgeon: {text}"))
 }
 
-/// How often Ctrl-C is looked for.
+/// Interval between two checks for Ctrl-C.
 const TICK: Duration = Duration::from_millis(20);
 
-/// Sets how many threads compute, 1 to 256; 0 for as many as the machine has. Results do not depend on it.
+/// Sets the number of threads, 1 to 256; 0 for as many as the machine has. Results do not depend on it.
 #[pyfunction]
 pub(crate) fn set_threads(count: i64) -> PyResult<()> {
     let sound = usize::try_from(count).ok().filter(|&n| n <= 256);

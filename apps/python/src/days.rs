@@ -14,7 +14,7 @@ use crate::make::RawLaw;
 use crate::model::{axes, colours};
 use crate::plant::RawPlant;
 
-/// The scan of a day: the bytes of a file and its name, or points as bytes of `f64`, three each.
+/// A scan with its day: the bytes of a file and its name, or points as bytes of `f64`, three each.
 #[derive(FromPyObject)]
 pub(crate) struct OfDay {
     #[pyo3(item)]
@@ -23,12 +23,12 @@ pub(crate) struct OfDay {
     file: Option<(Vec<u8>, String)>,
     #[pyo3(item)]
     points: Vec<u8>,
-    /// Of points that are given: bytes, three each; none without colours.
+    /// Colours of given points: bytes, three each; empty without colours.
     #[pyo3(item)]
     colors: Vec<u8>,
 }
 
-/// Scans of several days, their organs found again from day to day.
+/// Scans of several days, with their organs matched from day to day.
 #[pyclass(frozen, module = "burgeon._burgeon")]
 pub(crate) struct RawDays {
     name: String,
@@ -38,7 +38,8 @@ pub(crate) struct RawDays {
 
 #[pymethods]
 impl RawDays {
-    /// Of scans in the order of their days, in a unit, with an axis that is up and a texture (`scan`, `plain`); `single`: each is one organ.
+    /// Matches scans in the order of their days, in a unit, with an up axis and a texture (`scan`, `plain`);
+    /// `single`: each is one organ.
     #[new]
     fn new(
         py: Python<'_>,
@@ -62,7 +63,7 @@ impl RawDays {
                     let row =
                         |row: &[u8]| DVec3::new(number(&row[..8]), number(&row[8..16]), number(&row[16..]));
                     let points = scan.points.chunks_exact(24).map(|r| spec.inward(row(r))).collect();
-                    PointCloud { points, colors: colours(&scan.colors), offset_m: None }
+                    PointCloud { points, colors: colours(&scan.colors), ..PointCloud::default() }
                 }
                 Some((bytes, file)) => {
                     let extension = file.rsplit('.').next().unwrap_or_default();
@@ -82,7 +83,7 @@ impl RawDays {
             }
             clouds.push((scan.day, cloud));
         }
-        // All by the same, so that they stay where they are to one another.
+        // All scans get the same offset, so that they keep their relative positions.
         let offset = clouds.first().and_then(|(_, c)| PointCloud::far_offset(&c.points)).unwrap_or_default();
         clouds.iter_mut().flat_map(|(_, c)| &mut c.points).for_each(|p| *p -= offset);
         let made = compute(py, budget, |run| ScannedDays::new(&clouds, single, Seed::new(seed), run))?;
@@ -90,17 +91,17 @@ impl RawDays {
         Ok(Self { name, days, budget })
     }
 
-    /// The law by which the organs grow.
+    /// Returns the growth law of the organs.
     fn law(&self, py: Python<'_>) -> PyResult<RawLaw> {
         let law = compute(py, self.budget, |run| self.days.law(&self.name, run))?;
         let law = law.map_err(|e| unusable(py, &format!("{}: {e}", self.name)))?;
         if law.laws.is_empty() {
             return Err(unusable(py, &format!("{}: no organ is there on at least 3 days", self.name)));
         }
-        Ok(RawLaw::of(law))
+        Ok(RawLaw::from_law(law))
     }
 
-    /// The plant of a day; without a law at an even pace.
+    /// Returns the plant on a day; without a law it grows at an even pace.
     fn plant(&self, py: Python<'_>, day: f64, law: Option<PyRef<'_, RawLaw>>) -> PyResult<RawPlant> {
         let law: Option<&GrowthLaw> = law.as_ref().map(|l| l.law());
         let made = compute(py, self.budget, |run| {

@@ -26,9 +26,9 @@ fn exception<'a>(
     made().map_or_else(|e| e, PyErr::from_value)
 }
 
-/// What is wrong with what was asked for, or that it was stopped.
+/// Returns the exception for a faulty request, or for a computation that was stopped.
 pub(crate) fn refused<E: Coded + Display>(py: Python<'_>, error: &E) -> PyErr {
-    let Told { code, fields, .. } = error.told();
+    let Told { code, fields, .. } = error.details();
     let class = match code {
         "cancelled" => return PyKeyboardInterrupt::new_err("stopped"),
         "over-budget" => "BudgetError",
@@ -38,25 +38,25 @@ pub(crate) fn refused<E: Coded + Display>(py: Python<'_>, error: &E) -> PyErr {
     exception(py, class, &error.to_string(), code, fields)
 }
 
-/// A file that another one names, and that must not be read.
+/// Returns the exception for a file that another one names and that must not be read.
 pub(crate) fn not_readable(py: Python<'_>, error: &companions::NamedFileError) -> PyErr {
     let why = error.to_string();
     exception(py, "SpecError", &why, "file-refused", [("why", why.as_str())])
 }
 
-/// An argument that is not what it may be, in the words of the core.
+/// Returns the exception for an argument out of its range, with the message of the core.
 pub(crate) fn beyond(field: &str, value: impl Display, range: &str) -> PyErr {
     let value = burgeon::quoted(&value.to_string());
     wrong(&format!("{field} must be {range}, not {value}"), field, &value, range)
 }
 
-/// An argument that is not what it may be, in words of its own.
+/// Returns the exception for an argument out of its range, with a message of its own.
 pub(crate) fn wrong(message: &str, field: &str, value: &str, range: &str) -> PyErr {
     let told = [("field", field), ("value", value), ("range", range)];
     Python::attach(|py| exception(py, "SpecError", message, "field-range", told))
 }
 
-/// A word that is none of those that are known; `what` is said of it.
+/// Returns the exception for an unknown word; the message begins with `what`.
 pub(crate) fn choice(field: &str, word: &str, known: &[&str], what: &str) -> PyErr {
     let (word, choices) = (burgeon::quoted(word), known.join(", "));
     let message =
@@ -65,34 +65,34 @@ pub(crate) fn choice(field: &str, word: &str, known: &[&str], what: &str) -> PyE
     Python::attach(|py| exception(py, "SpecError", &message, "spec-choice", told))
 }
 
-/// What a reader of JSON says of an argument.
+/// Returns the exception for an argument that a reader of JSON refused.
 pub(crate) fn misread(py: Python<'_>, field: &str, error: &serde_json::Error) -> PyErr {
     let said = error.to_string();
     // Rows follow the name at once.
     let text = if said.starts_with('[') { format!("{field}{said}") } else { format!("{field}: {said}") };
-    let slip = Slip::of(&text);
-    let Told { code, fields, .. } = slip.told();
+    let slip = Slip::from_message(&text);
+    let Told { code, fields, .. } = slip.details();
     let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
     exception(py, "SpecError", &(burgeon::plainly(&text) + &slip.hint()), code, fields)
 }
 
-/// Which of the words that are known is meant, as the end of a message; empty if none is near.
+/// Returns the end of a message with the known word that is probably meant; empty if none is near.
 #[pyfunction]
 pub(crate) fn meant(word: &str, known: Vec<String>) -> String {
     burgeon::meant(word, known.iter().map(String::as_str))
 }
 
-/// What a file of another program is and what to do with it, by its first bytes; None of all that may be read.
+/// Recognises a file of another program by its first bytes, and says what to do with it; None for all readable files.
 #[pyfunction]
 pub(crate) fn foreign(start: &[u8]) -> Option<String> {
     Foreign::sniff_no_drawing(start).map(|foreign| foreign.to_string())
 }
 
-/// What a file is that is none of those that are wanted: of which program, or `otherwise`.
+/// Returns the exception for a file that is none of the wanted ones: it names its program, or says `otherwise`.
 pub(crate) fn unlike(py: Python<'_>, name: &str, bytes: &[u8], otherwise: &str) -> PyErr {
     match Foreign::sniff(bytes) {
         Some(foreign) => {
-            let Told { code, fields, .. } = foreign.told();
+            let Told { code, fields, .. } = foreign.details();
             let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
             exception(py, "SpecError", &format!("{name}: {foreign}"), code, fields)
         }
@@ -100,7 +100,7 @@ pub(crate) fn unlike(py: Python<'_>, name: &str, bytes: &[u8], otherwise: &str) 
     }
 }
 
-/// What is wrong, in words alone.
+/// Returns an exception with only a message.
 pub(crate) fn unusable(py: Python<'_>, error: &impl Display) -> PyErr {
     exception(py, "SpecError", &error.to_string(), "", [])
 }

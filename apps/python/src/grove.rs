@@ -1,4 +1,4 @@
-//! Plants that stand together: where they stand, their meshes, their cloud.
+//! Plants that stand together: their places, their meshes, their cloud.
 
 use std::sync::Arc;
 
@@ -18,21 +18,21 @@ use crate::light::LightAsked;
 use crate::model::{RawModel, model_format};
 use crate::plant::{RawPlant, Scan, cloud};
 
-/// More plants are no stand that a scanner sees at once.
+/// Most plants of a stand that a scanner measures at once.
 const MOST: usize = 2000;
 
-/// Plants, and where copies of them stand.
+/// Plants, and the places of their copies.
 #[pyclass(frozen, module = "burgeon._burgeon")]
 #[derive(Clone)]
 pub(crate) struct RawGrove {
     plants: Vec<Arc<Held>>,
-    /// Rows of the plants, and where each stands.
+    /// Rows of the plants, and the place of each.
     stand: Vec<(usize, Placement)>,
-    /// What they stand on.
+    /// Ground of the plants.
     site: Option<Arc<SceneSite>>,
 }
 
-/// What plants stand on, as Python asks for it.
+/// Ground of plants, as Python requests it.
 #[derive(FromPyObject)]
 pub(crate) struct Ground {
     #[pyo3(item)]
@@ -43,7 +43,7 @@ pub(crate) struct Ground {
     stones: u32,
     #[pyo3(item)]
     stone_size: f64,
-    /// Middle of the soil, radius, height.
+    /// Centre of the soil, radius, height.
     #[pyo3(item)]
     pots: Vec<([f64; 3], f64, f64)>,
     #[pyo3(item)]
@@ -68,7 +68,7 @@ impl Ground {
     }
 }
 
-/// Places in a rectangle `width` by `depth` metres around the origin: x, z, yaw in degrees, scale.
+/// Returns places in a rectangle `width` by `depth` metres around the origin: x, z, yaw in degrees, scale.
 #[pyfunction]
 pub(crate) fn places(
     area: (f64, f64),
@@ -114,7 +114,7 @@ impl RawGrove {
 }
 
 impl RawGrove {
-    /// The plants where they stand.
+    /// Returns the plants in their places.
     fn stood(&self) -> Vec<Stood<'_>> {
         let stood = self.plants_standing().zip(&self.stand).filter_map(|(standing, (row, _))| {
             let held = self.plants.get(*row)?;
@@ -126,7 +126,7 @@ impl RawGrove {
 
 #[pymethods]
 impl RawGrove {
-    /// `stand`: row of the plant, x, y, z, yaw in degrees, scale.
+    /// Puts plants into their places. `stand`: row of the plant, x, y, z, yaw in degrees, scale.
     #[new]
     #[pyo3(signature = (plants, stand, ground))]
     fn new(
@@ -153,18 +153,18 @@ impl RawGrove {
         Ok(Self { plants, stand, site })
     }
 
-    /// Of each part of the model that is no plant's, which come last, its number in the list of parts.
+    /// Returns the labels of the model's last parts, which belong to no plant, as numbers in the list of parts.
     fn site_labels(&self) -> Vec<u8> {
         self.site.as_ref().map_or_else(Vec::new, |site| site.labels.clone())
     }
 
-    /// Triangles of each part of the model that is no plant's.
+    /// Returns the number of triangles of each part of the model that belongs to no plant.
     fn site_triangles(&self) -> Vec<usize> {
         let parts = self.site.iter().flat_map(|site| &site.model.parts);
         parts.map(|part| part.mesh.triangles.len()).collect()
     }
 
-    /// Light on each axis and organ: columns, and figures as JSON.
+    /// Returns the light on each axis and organ: columns, and figures as JSON.
     fn light<'py>(&self, py: Python<'py>, asked: LightAsked) -> PyResult<(Bound<'py, PyDict>, String)> {
         let made = compute(py, 1.0, |run| {
             let stood = self.stood();
@@ -173,13 +173,13 @@ impl RawGrove {
         crate::light::columns(py, made)
     }
 
-    /// All of it as one model.
+    /// Returns all of it as one model.
     fn model(&self, py: Python<'_>, name: &str) -> PyResult<RawModel> {
         let (own, name) = (self.clone(), name.to_owned());
         aside(py, move || RawModel::new(burgeon::scene_model(&name, &own.standing())))
     }
 
-    /// The files of a format in which copies share their meshes: names and bytes, its own first.
+    /// Returns the files of a format in which copies share their meshes: names and bytes, the model's own first.
     fn files<'py>(
         &self,
         py: Python<'py>,
@@ -199,7 +199,7 @@ impl RawGrove {
         Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
     }
 
-    /// Points as a scanner around all of it sees them; `tree` is the place.
+    /// Returns the points that a scanner around all of it measures; `tree` is the place.
     fn survey<'py>(&self, py: Python<'py>, scan: Scan) -> PyResult<Bound<'py, PyDict>> {
         let (spec, seed) = scan.spec();
         let made = compute(py, 1.0, |run| {

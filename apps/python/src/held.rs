@@ -1,4 +1,4 @@
-//! What was made of a document's plant: kept as long as anything of Python looks at it.
+//! The result of a document's plant: kept as long as any Python object uses it.
 
 use std::sync::Arc;
 
@@ -13,28 +13,28 @@ use pyo3::prelude::*;
 use crate::compute::compute;
 use crate::fault::{beyond, refused, unusable};
 
-/// A plant of a document and what was made of it. Nothing changes it: what follows from it is another.
+/// A plant of a document and its results. It never changes: each edit makes another one.
 pub(crate) struct Held {
     pub(crate) scene: SceneEvaluator,
     pub(crate) document: Document,
     pub(crate) id: PlantId,
     pub(crate) budget: f64,
-    /// In its place, a plant that no document holds: a leaf of chief veins, or of a scan, or a scanned tree.
+    /// A plant without a document: a leaf of chief veins, or of a scan, or a scanned tree.
     pub(crate) lone: Option<MadePlant>,
-    /// Of a scanned tree.
+    /// Report on a scanned tree.
     pub(crate) found: Option<Found>,
 }
 
-/// What a scan told of its tree.
+/// Report of a scan on its tree.
 pub(crate) struct Found {
-    /// Where it stood in the scan, metres, +Y up.
+    /// Place of its foot in the scan, metres, +Y up.
     pub(crate) foot: DVec3,
-    /// What became of the points.
+    /// Counts of the points.
     pub(crate) tally: serde_json::Value,
     pub(crate) seed: Seed,
 }
 
-/// Does a command; one that changes nothing is no error.
+/// Applies a command; one that changes nothing is no error.
 pub(crate) fn run(py: Python<'_>, editor: &mut Editor, command: Command) -> PyResult<()> {
     match editor.run(command) {
         Ok(()) | Err(CommandError::Nothing(_)) => Ok(()),
@@ -67,13 +67,13 @@ impl Held {
         Ok(Arc::new(held))
     }
 
-    /// A plant that no document holds.
+    /// Holds a plant that has no document.
     pub(crate) fn lone(made: MadePlant, found: Option<Found>, budget: f64) -> Arc<Self> {
         let (scene, document) = (SceneEvaluator::default(), Document::default());
         Arc::new(Self { scene, document, id: PlantId(u32::MAX), budget, lone: Some(made), found })
     }
 
-    /// The entry of the report.
+    /// Returns the entry of the report.
     pub(crate) fn report(&self) -> Option<ItemReport> {
         self.lone.as_ref().map(|l| l.item.clone()).or_else(|| self.shown().map(|p| p.report()))
     }
@@ -116,7 +116,7 @@ impl Held {
         Some(&self.document.plant(self.id)?.settings().maker)
     }
 
-    /// What only plants of documents can do.
+    /// Fails for plants without a document.
     pub(crate) fn must_have_document(&self, py: Python<'_>) -> PyResult<()> {
         if self.lone.is_none() {
             return Ok(());
@@ -126,7 +126,7 @@ impl Held {
         Err(unusable(py, &line))
     }
 
-    /// The plant after more commands.
+    /// Returns the plant after more commands.
     pub(crate) fn after(
         &self,
         py: Python<'_>,
@@ -135,7 +135,7 @@ impl Held {
         self.after_with(py, None, commands)
     }
 
-    /// The plant after more commands; with columns for wind or without, if that is said.
+    /// Returns the plant after more commands; with or without columns for wind, if `wind` says so.
     pub(crate) fn after_with(
         &self,
         py: Python<'_>,

@@ -2,18 +2,18 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
+//! | `make` | request -> a document of one plant -> the plant; growth laws |
 //! | `again` | a plant with other settings |
 //! | `scan` | trees of laser scans |
 //! | `days` | plants of scans on several days |
 //! | `write` | a plant's files with coarser copies, instances, joints |
-//! | `held` | what was made, as long as anything looks at it |
-//! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
+//! | `held` | results, as long as anything uses them |
+//! | `plant`, `model` | results: tables, meshes, clouds, files, pictures |
 //! | `grove` | plants that stand together |
-//! | `light` | what plants absorb |
+//! | `light` | light that plants absorb |
 //! | `stand` | stands of many trees, and their tiles |
-//! | `column` | memory of ours that `NumPy` shows without a copy |
-//! | `value` | what people write in Python -> JSON |
+//! | `column` | memory of ours for `NumPy` without a copy |
+//! | `value` | Python values -> JSON |
 //! | `compute` | threads, Ctrl-C, limits |
 //! | `fault` | errors with codes -> exceptions |
 //!
@@ -66,7 +66,7 @@ mod _burgeon {
     #[pymodule_export]
     const VERSION: &str = burgeon::VERSION;
 
-    /// What a point or triangle can lie on, by the number that is its label.
+    /// Words for the parts of plants and grounds, by their label numbers.
     #[pymodule_export]
     const PARTS: [&str; 21] = burgeon::PARTS;
 }

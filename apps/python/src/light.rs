@@ -1,4 +1,4 @@
-//! Light on plants: what is asked for, and the table that comes out.
+//! Light on plants: requests, and the table of results.
 
 use burgeon::light::{LightError, LightSpec, Optics, SunPlace, SunPosition};
 use burgeon::{
@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::column::Column;
 use crate::fault::{refused, unusable};
 
-/// How plants are lit, as Python asks for it; what is None is the command line's usual.
+/// Lighting of plants, as Python requests it; None stands for the default of the command line.
 #[derive(FromPyObject)]
 pub(crate) struct LightAsked {
     #[pyo3(item)]
@@ -22,10 +22,10 @@ pub(crate) struct LightAsked {
     diffuse: Option<f64>,
     #[pyo3(item)]
     direct: Option<f64>,
-    /// Azimuth and elevation, degrees.
+    /// Azimuth and elevation of the sun, degrees.
     #[pyo3(item)]
     sun: Option<[f64; 2]>,
-    /// Latitude, longitude, metres above the sea.
+    /// Latitude and longitude in degrees, metres above the sea.
     #[pyo3(item)]
     place: Option<[f64; 3]>,
     #[pyo3(item)]
@@ -55,7 +55,7 @@ pub(crate) struct LightAsked {
     rays: Option<u32>,
 }
 
-/// Light on plants, with what a person should know of it.
+/// Light on plants, with its warnings.
 pub(crate) struct Lit {
     stand: LitStand,
     sources: SourceFigures,
@@ -100,7 +100,7 @@ impl LightAsked {
         }
     }
 
-    /// What the plants absorb.
+    /// Computes the light that the plants absorb.
     pub(crate) fn light(
         &self,
         stand: &[Stood<'_>],
@@ -134,7 +134,7 @@ fn failed(py: Python<'_>, error: &LightSourceError) -> PyErr {
     }
 }
 
-/// The table's columns, a row for each axis and organ with a surface, and the figures as JSON.
+/// Returns the table's columns, a row for each axis and organ with a surface, and the figures as JSON.
 pub(crate) fn columns<'py>(
     py: Python<'py>,
     made: Result<Lit, LightSourceError>,

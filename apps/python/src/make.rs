@@ -1,4 +1,4 @@
-//! What is asked for in Python -> a document of one plant -> the plant.
+//! A request from Python -> a document of one plant -> the plant.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -27,19 +27,19 @@ use crate::held::{Held, run};
 use crate::model::{axes, colours};
 use crate::plant::RawPlant;
 
-/// Where a spec comes from: a preset by its word, the text of a file with the file's place, or fields alone.
+/// Source of a spec: a preset by its word, the text of a file with the file's place, or fields alone.
 #[derive(FromPyObject)]
 pub(crate) struct Base {
     #[pyo3(item)]
     preset: Option<String>,
     #[pyo3(item)]
     toml: Option<(String, std::path::PathBuf)>,
-    /// Its paths may lead anywhere.
+    /// Whether its paths may lead anywhere.
     #[pyo3(item)]
     trust_paths: bool,
 }
 
-/// A tree; `leaf`: the leaf that it bears.
+/// Grows a tree; `leaf`: the leaf that it bears.
 #[pyfunction]
 pub(crate) fn grow(
     py: Python<'_>,
@@ -62,7 +62,7 @@ pub(crate) fn grow(
 }
 
 impl Base {
-    /// The spec of a tree, and the species that it comes from.
+    /// Returns the spec of a tree, and its species.
     pub(crate) fn tree(&self, py: Python<'_>) -> PyResult<(TreeSpec, Option<&'static str>)> {
         match (&self.preset, &self.toml) {
             (Some(word), _) => {
@@ -87,17 +87,17 @@ impl Base {
         }
     }
 
-    /// Fields alone, beside a file.
+    /// Returns a source of fields alone; file names are relative to a file.
     pub(crate) fn of_fields(beside: std::path::PathBuf, trust_paths: bool) -> Self {
         Self { preset: None, toml: Some((String::new(), beside)), trust_paths }
     }
 
-    /// The text of a file.
+    /// Returns the text of a file.
     pub(crate) fn text(&self) -> Option<&str> {
         self.toml.as_ref().map(|(text, _)| text.as_str())
     }
 
-    /// The file beside which others are named.
+    /// Returns the file to which the names of others are relative.
     pub(crate) fn naming(&self) -> &Path {
         self.toml.as_ref().map_or(Path::new("spec.toml"), |(_, spec)| spec)
     }
@@ -106,7 +106,7 @@ impl Base {
         Trust { paths: self.trust_paths, allow: "trust_paths=True" }
     }
 
-    /// The tree of a spec that this one names.
+    /// Returns the tree of a spec that this one names.
     pub(crate) fn tree_beside(&self, py: Python<'_>, name: &str) -> PyResult<TreeSpec> {
         let named = Named { naming: self.naming(), name };
         let bytes = named.open(self.trust(), LIMITS.text).and_then(|(file, _)| named.read(file, LIMITS.text));
@@ -117,7 +117,7 @@ impl Base {
     }
 }
 
-/// A leaf of marks, of a vein graph or of numbers, for a tree to bear.
+/// Returns the settings of a leaf of marks, of a vein graph or of numbers, for a tree to bear.
 fn lender(py: Python<'_>, leaf: &RawPlant) -> PyResult<Settings> {
     let held = &leaf.0;
     let own = held.document.plant(held.id).map(DocumentPlant::settings);
@@ -125,7 +125,7 @@ fn lender(py: Python<'_>, leaf: &RawPlant) -> PyResult<Settings> {
     leaf.ok_or_else(|| unusable(py, &"leaf must be a leaf of marks, of a vein graph or of numbers"))
 }
 
-/// The leaf of a file that a spec names, beside the spec.
+/// Returns the leaf of a file that a spec names, relative to the spec.
 fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<Settings> {
     let named = Named { naming: base.naming(), name: file };
     let path = named.path();
@@ -144,7 +144,7 @@ fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<
     Ok(Settings { name: file.to_owned(), seed, maker, ..Settings::default() })
 }
 
-/// A mesh or cloud that a spec names, in metres, +Y up; none of what is no such file.
+/// Reads a mesh or cloud that a spec names, in metres, +Y up; none for other files.
 pub(crate) fn named_mesh(named: &Named<'_>, trust: Trust) -> Result<Option<NamedMesh>, NamedFileError> {
     match named.open(trust, LIMITS.model) {
         Ok((file, _)) => Ok(mesh_of(&named.path(), &named.read(file, LIMITS.model)?)),
@@ -157,7 +157,8 @@ fn mesh_of(path: &Path, bytes: &[u8]) -> Option<NamedMesh> {
     let extension = path.extension()?.to_str()?;
     let (axes, mut report) = (ExportSpec::default(), Report::default());
     let cloud = CloudFormat::from_extension(extension);
-    if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) = cloud {
+    if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las | CloudFormat::E57)) = cloud
+    {
         let cloud = burgeon::formats::read_cloud(bytes, format, &axes, &mut report).ok()?;
         return Some((cloud.points, Vec::new()));
     }
@@ -167,7 +168,7 @@ fn mesh_of(path: &Path, bytes: &[u8]) -> Option<NamedMesh> {
     Some(model.triangles())
 }
 
-/// A flower at a day; none for full bloom.
+/// Makes a flower on a day; none for full bloom.
 #[pyfunction]
 pub(crate) fn bloom(
     py: Python<'_>,
@@ -192,7 +193,7 @@ pub(crate) fn bloom(
     asked.alone(py, &name, Maker::Flower(Box::new(flower)), wind).map(RawPlant)
 }
 
-/// A leaf of numbers, or of a file of marks or veins: its name and text.
+/// Makes a leaf of numbers, or of a file of marks or veins, given by name and text.
 #[pyfunction]
 pub(crate) fn leaf(
     py: Python<'_>,
@@ -211,7 +212,7 @@ pub(crate) fn leaf(
     asked.alone(py, &name, Maker::Leaf(Box::new(LeafMaker { data, settings })), wind).map(RawPlant)
 }
 
-/// Chief veins that start together: of a kind, with numbers of it; or of a file, by its name and text.
+/// Chief veins that start together: those of a kind, with its numbers; or those of a file, by its name and text.
 #[derive(FromPyObject)]
 pub(crate) struct Veins {
     #[pyo3(item)]
@@ -228,7 +229,7 @@ pub(crate) struct Veins {
     side_veins: Option<u32>,
 }
 
-/// A number that may be left out, within its range.
+/// Returns an optional number within its range.
 fn within(name: &str, value: Option<f64>, usual: f64, [least, most]: [f64; 2]) -> PyResult<f64> {
     let value = value.unwrap_or(usual);
     if (least..=most).contains(&value) {
@@ -274,7 +275,7 @@ impl Veins {
     }
 }
 
-/// A leaf of chief veins that start together.
+/// Makes a leaf of chief veins that start together.
 #[pyfunction]
 pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> PyResult<RawPlant> {
     let mut spec = asked.spec(py, &LeafSpec::default())?;
@@ -303,8 +304,8 @@ pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> P
     Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?, None, budget)))
 }
 
-/// A leaf of a scan: points in metres, with their colours as bytes if they have some, or the bytes of a file, its extension and
-/// its unit; and its texture (`scan`, `plain`).
+/// Makes a leaf of a scan: points in metres, with their colours as bytes if they have some, or the bytes of a file,
+/// its extension and its unit; and its texture (`scan`, `plain`).
 #[pyfunction]
 pub(crate) fn leaf_of_scan(
     py: Python<'_>,
@@ -318,7 +319,7 @@ pub(crate) fn leaf_of_scan(
         None => {
             let (points, colors) = points;
             let points = points.into_iter().map(DVec3::from_array).collect();
-            PointCloud { points, colors: colours(&colors), offset_m: None }
+            PointCloud { points, colors: colours(&colors), ..PointCloud::default() }
         }
         Some((bytes, extension, unit)) => {
             let format = CloudFormat::from_extension(&extension);
@@ -342,7 +343,7 @@ pub(crate) fn leaf_of_scan(
     Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?.0, None, budget)))
 }
 
-/// Whether the text of a file of marks tells chief veins that start together.
+/// Returns whether the text of a file of marks describes chief veins that start together.
 #[pyfunction]
 pub(crate) fn is_rays(text: &str) -> bool {
     burgeon::formats::is_rays(text.as_bytes())
@@ -357,7 +358,7 @@ pub(crate) struct Ink {
     lines: Vec<Vec<[f64; 2]>>,
 }
 
-/// The plant of a drawing.
+/// Makes the plant of a drawing.
 #[pyfunction]
 pub(crate) fn sketch(
     py: Python<'_>,
@@ -398,10 +399,10 @@ pub(crate) fn sketch(
     let spec = asked.spec(py, &SketchSpec::default())?;
     let (skin, wind) = asked.skin(py)?;
     let mut commands = vec![
-        SketchCommand::SetSketch(Box::new(spec)).of(id),
-        SketchCommand::SetSkin(skin).of(id),
-        burgeon::document::PlantCommand::SetSeed(asked.seed()).of(id),
-        SketchCommand::SetDay(day).of(id),
+        SketchCommand::SetSketch(Box::new(spec)).for_plant(id),
+        SketchCommand::SetSkin(skin).for_plant(id),
+        burgeon::document::PlantCommand::SetSeed(asked.seed()).for_plant(id),
+        SketchCommand::SetDay(day).for_plant(id),
     ];
     for (row, word) in classes {
         let count = strokes.len();
@@ -417,7 +418,7 @@ pub(crate) fn sketch(
                 "there is no class",
             )
         })?;
-        commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).of(id));
+        commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).for_plant(id));
     }
     let mut editor = Editor::new(document);
     commands.into_iter().try_for_each(|command| run(py, &mut editor, command))?;
@@ -425,7 +426,7 @@ pub(crate) fn sketch(
     asked.made(py, document, id, wind).map(RawPlant)
 }
 
-/// Every plant of a project of the Studio that is not hidden, or one of them by its row.
+/// Makes every visible plant of a project of the Studio, or one of them by its row.
 #[pyfunction]
 #[pyo3(signature = (bytes, budget, wind, only = None))]
 pub(crate) fn open_project(
@@ -455,7 +456,7 @@ pub(crate) fn open_project(
 pub(crate) struct RawLaw(GrowthLaw);
 
 impl RawLaw {
-    pub(crate) const fn of(law: GrowthLaw) -> Self {
+    pub(crate) const fn from_law(law: GrowthLaw) -> Self {
         Self(law)
     }
 
@@ -483,7 +484,7 @@ impl RawLaw {
         })
     }
 
-    /// A law of a file of `burgeon bloom fit`.
+    /// Reads a law from a file of `burgeon bloom fit`.
     #[staticmethod]
     fn read(py: Python<'_>, text: &str) -> PyResult<Self> {
         let law: GrowthLaw = serde_json::from_str(text)
@@ -492,12 +493,12 @@ impl RawLaw {
         fault.map_or(Ok(Self(law)), |fault| Err(unusable(py, &format!("cannot be used: {fault}"))))
     }
 
-    /// The law as its file has it.
+    /// Returns the law in the form of its file.
     fn json(&self) -> String {
         serde_json::to_string(&self.0).unwrap_or_default()
     }
 
-    /// Sizes of an organ on some days, in the count of those that were fitted, metres.
+    /// Returns the sizes of an organ on some days, metres; organs are counted as in the fit.
     fn values(&self, organ: usize, days: Vec<f64>) -> PyResult<Vec<f64>> {
         let count = self.0.laws.len();
         let none = || beyond("organ", organ, &format!("0 to {}", count.saturating_sub(1)));
@@ -505,13 +506,13 @@ impl RawLaw {
         Ok(days.into_iter().map(|d| law.value(d - self.0.first_day)).collect())
     }
 
-    /// Whether the days determine the law of each organ.
+    /// Returns whether the days determine the law of each organ.
     fn determined(&self) -> Vec<bool> {
         self.0.laws.iter().map(burgeon::bloom::RegionLaw::is_determined).collect()
     }
 }
 
-/// The schema of what a maker can be asked for, as JSON.
+/// Returns the schema of a maker's options, as JSON.
 #[pyfunction]
 pub(crate) fn schema(maker: &str) -> PyResult<String> {
     Ok(match maker {
@@ -526,7 +527,7 @@ pub(crate) fn schema(maker: &str) -> PyResult<String> {
     })
 }
 
-/// The words of trees and of flowers that come with the program.
+/// Returns the words of trees and of flowers that come with the program.
 #[pyfunction]
 pub(crate) fn presets() -> (Vec<&'static str>, Vec<&'static str>) {
     (burgeon::PRESETS.iter().map(|p| p.key).collect(), FlowerSpec::PRESETS.to_vec())

@@ -16,14 +16,14 @@ use crate::compute::{aside, compute};
 use crate::fault::{beyond, unusable, wrong};
 use crate::held::Held;
 
-/// Who keeps a model.
+/// Owner of a model.
 #[derive(Clone)]
 enum Of {
     Plant(Arc<Held>),
     Own(Arc<Model>),
 }
 
-/// Meshes and materials, which nothing changes.
+/// Meshes and materials, which never change.
 #[pyclass(frozen, module = "burgeon._burgeon")]
 pub(crate) struct RawModel(Of);
 
@@ -51,12 +51,12 @@ impl RawModel {
     }
 }
 
-/// Colours of points, from bytes of three each.
+/// Returns the colours of points, from three bytes each.
 pub(crate) fn colours(bytes: &[u8]) -> Vec<[u8; 3]> {
     bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
 }
 
-/// Unit and up axis of a file, by their words.
+/// Returns the unit and up axis of a file, from their words.
 pub(crate) fn axes(unit: &str, up: &str) -> PyResult<ExportSpec> {
     let known = Unit::from_word(unit);
     let unit = known.ok_or_else(|| beyond("unit", format!("{unit:?}"), &Unit::words()))?;
@@ -65,7 +65,7 @@ pub(crate) fn axes(unit: &str, up: &str) -> PyResult<ExportSpec> {
     Ok(ExportSpec { up, unit })
 }
 
-/// How a picture is taken, as Python asks for it.
+/// Settings of a picture, as Python requests it.
 #[derive(FromPyObject)]
 pub(crate) struct Look {
     #[pyo3(item)]
@@ -86,7 +86,7 @@ pub(crate) struct Look {
     seed: u64,
     #[pyo3(item)]
     camera: Option<Eye>,
-    /// Towards the sun.
+    /// Direction towards the sun.
     #[pyo3(item)]
     sun: Option<[f64; 3]>,
     #[pyo3(item)]
@@ -95,7 +95,7 @@ pub(crate) struct Look {
     skylight: f64,
 }
 
-/// A calibrated camera, as Python asks for it.
+/// A calibrated camera, as Python requests it.
 #[derive(FromPyObject)]
 pub(crate) struct Eye {
     #[pyo3(item)]
@@ -192,7 +192,7 @@ impl RawModel {
         &self.get().name
     }
 
-    /// Of each part: name, row of its material, vertices, triangles.
+    /// Returns for each part: name, row of its material, vertices, triangles.
     fn parts(&self) -> Vec<(String, usize, usize, usize)> {
         let part = |p: &burgeon::mesh::Part| {
             (p.name.clone(), p.material.index(), p.mesh.positions.len(), p.mesh.triangles.len())
@@ -200,7 +200,7 @@ impl RawModel {
         self.get().parts.iter().map(part).collect()
     }
 
-    /// A column of a part, without a copy; empty where the model has none.
+    /// Returns a column of a part, without a copy; empty if the model has none.
     fn column(&self, part: usize, name: &str) -> PyResult<Column> {
         let parts = &self.get().parts;
         let none =
@@ -208,18 +208,18 @@ impl RawModel {
         let mesh = &parts.get(part).ok_or_else(none)?.mesh;
         let owner = self.owner();
         Ok(match name {
-            "positions" => Column::of(owner, &mesh.positions),
-            "normals" => Column::of(owner, &mesh.normals),
-            "uvs" => Column::of(owner, &mesh.uvs),
-            "colors" => Column::of(owner, &mesh.colors),
-            "wind" => Column::of(owner, &mesh.wind),
-            "pivots" => Column::of(owner, &mesh.pivots),
-            "triangles" => Column::of(owner, &mesh.triangles),
+            "positions" => Column::from_rows(owner, &mesh.positions),
+            "normals" => Column::from_rows(owner, &mesh.normals),
+            "uvs" => Column::from_rows(owner, &mesh.uvs),
+            "colors" => Column::from_rows(owner, &mesh.colors),
+            "wind" => Column::from_rows(owner, &mesh.wind),
+            "pivots" => Column::from_rows(owner, &mesh.pivots),
+            "triangles" => Column::from_rows(owner, &mesh.triangles),
             other => return Err(PyKeyError::new_err(format!("a mesh has no column {other:?}"))),
         })
     }
 
-    /// Each material as a dict; its textures as RGBA columns or None.
+    /// Returns each material as a dict; its textures as RGBA columns or None.
     fn materials<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let material = |m: &burgeon::mesh::Material| {
             let dict = PyDict::new(py);
@@ -240,7 +240,7 @@ impl RawModel {
             for (name, texture) in textures {
                 let column = texture.as_ref().map(|t| {
                     let shape = [t.height as usize, t.width as usize, 4];
-                    Py::new(py, Column::of(t.clone(), &t.pixels).shaped(&shape))
+                    Py::new(py, Column::from_rows(t.clone(), &t.pixels).shaped(&shape))
                 });
                 dict.set_item(name, column.transpose()?)?;
             }
@@ -249,7 +249,7 @@ impl RawModel {
         self.get().materials.iter().map(material).collect()
     }
 
-    /// The fingerprint of meshes and materials.
+    /// Returns the fingerprint of meshes and materials.
     fn digest(&self, py: Python<'_>) -> PyResult<String> {
         let own = Self(self.0.clone());
         aside(py, move || {
@@ -259,7 +259,7 @@ impl RawModel {
         })
     }
 
-    /// The files of a format by its extension: names and bytes, the model's own first.
+    /// Returns the files of a format by its extension: names and bytes, the model's own first.
     #[pyo3(signature = (extension, stem, unit, up))]
     fn files<'py>(
         &self,
@@ -277,7 +277,7 @@ impl RawModel {
         Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
     }
 
-    /// A picture: RGBA bytes, rows from the top.
+    /// Renders a picture: RGBA bytes, rows from the top.
     fn render(&self, py: Python<'_>, look: Look) -> PyResult<Column> {
         let spec = look.spec()?;
         let drawn = compute(py, 1.0, |run| burgeon::render::render(self.get(), &spec, run))?;
@@ -286,8 +286,8 @@ impl RawModel {
         Ok(Column::new(picture.pixels).shaped(&shape))
     }
 
-    /// What each pixel of a picture shows: part, triangle (-1 for nothing), distance (infinite for nothing), normal (0 for
-    /// nothing).
+    /// Returns for each pixel of a picture: part, triangle (-1 for nothing), distance (infinite for nothing), normal
+    /// (0 for nothing).
     fn masks(&self, py: Python<'_>, look: Look) -> PyResult<(Column, Column, Column, Column)> {
         let spec = look.spec()?;
         let seen =
@@ -313,7 +313,8 @@ impl RawModel {
     }
 }
 
-/// The formats of models and of structure that are written: kind, word, ending, and what their files have room for.
+/// Returns the formats of models and of structure that Burgeon writes: kind, word, extension, and the contents for
+/// which their files have room.
 #[pyfunction]
 pub(crate) fn formats() -> Vec<(&'static str, &'static str, &'static str, Vec<&'static str>)> {
     let models = ModelFormat::ALL.into_iter().map(|f| ("model", f.row()));
@@ -323,7 +324,7 @@ pub(crate) fn formats() -> Vec<(&'static str, &'static str, &'static str, Vec<&'
     written.map(|(kind, row)| (kind, row.word, row.endings[0], rooms(row))).collect()
 }
 
-/// What a model is written as, by its extension.
+/// Returns the format of a model by its extension.
 pub(crate) fn model_format(extension: &str) -> PyResult<ModelFormat> {
     let format = ModelFormat::from_extension(extension).filter(|f| f.row().is_written());
     format.ok_or_else(|| {
@@ -333,7 +334,7 @@ pub(crate) fn model_format(extension: &str) -> PyResult<ModelFormat> {
     })
 }
 
-/// The files of a model: its own, then those that it names.
+/// Writes the files of a model: its own, then those that it names.
 pub(crate) fn written(
     model: &Model,
     format: ModelFormat,
@@ -346,7 +347,7 @@ pub(crate) fn written(
     Ok(files.named(format!("{stem}.{extension}")))
 }
 
-/// The bytes of a file that is written aside.
+/// Returns the bytes of a file, written without Python's lock.
 pub(crate) fn bytes_of<E: std::fmt::Display + Send + 'static>(
     py: Python<'_>,
     write: impl FnOnce(&mut Vec<u8>) -> Result<(), E> + Send + 'static,
@@ -358,7 +359,7 @@ pub(crate) fn bytes_of<E: std::fmt::Display + Send + 'static>(
     Ok(PyBytes::new(py, &written.map_err(|e| unusable(py, &e))?))
 }
 
-/// RGBA bytes as a PNG.
+/// Encodes RGBA bytes as a PNG.
 #[pyfunction]
 pub(crate) fn png<'py>(
     py: Python<'py>,
@@ -370,7 +371,7 @@ pub(crate) fn png<'py>(
     bytes_of(py, move |bytes| burgeon::formats::write_png(width, height, &pixels, bytes))
 }
 
-/// Lines (x, y upwards) as a drawing's SVG; each lies on the layer of its word.
+/// Writes lines (x, y upwards) as an SVG drawing; each lies on the layer of its word.
 #[pyfunction]
 pub(crate) fn drawing_svg<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! A plant: its tables, its files, and other plants that follow from it.
+//! A plant: its tables, its files, and plants derived from it.
 
 use std::sync::Arc;
 
@@ -19,13 +19,13 @@ use crate::held::Held;
 use crate::light::LightAsked;
 use crate::model::{RawModel, axes, bytes_of};
 use crate::value::json_of;
-use crate::write::Form;
+use crate::write::{Form, Written};
 
-/// A plant, which nothing changes.
+/// A plant, which never changes.
 #[pyclass(frozen, module = "burgeon._burgeon")]
 pub(crate) struct RawPlant(pub(crate) Arc<Held>);
 
-fn of<T: Send + Sync + crate::column::Row>(values: impl Iterator<Item = T>) -> Column {
+fn collect_column<T: Send + Sync + crate::column::Row>(values: impl Iterator<Item = T>) -> Column {
     Column::new(values.collect())
 }
 
@@ -33,7 +33,7 @@ fn handle(raw: Option<u32>) -> i32 {
     raw.and_then(|r| i32::try_from(r).ok()).unwrap_or(burgeon::NOTHING)
 }
 
-/// The columns of a cloud by their names.
+/// Returns the columns of a cloud by their names.
 pub(crate) fn cloud(py: Python<'_>, cloud: Surveyed) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);
     let put = |name: &str, column: Column| dict.set_item(name, Py::new(py, column)?);
@@ -48,7 +48,7 @@ pub(crate) fn cloud(py: Python<'_>, cloud: Surveyed) -> PyResult<Bound<'_, PyDic
     Ok(dict)
 }
 
-/// How a scanner stands around plants, as Python asks for it.
+/// Positions of a scanner around plants, as Python requests them.
 #[derive(FromPyObject)]
 pub(crate) struct Scan {
     #[pyo3(item)]
@@ -91,7 +91,7 @@ impl RawPlant {
         }
     }
 
-    /// The entry of the report, as JSON.
+    /// Returns the entry of the report, as JSON.
     fn report(&self) -> String {
         self.0.report().and_then(|r| serde_json::to_string(&r).ok()).unwrap_or_default()
     }
@@ -101,13 +101,13 @@ impl RawPlant {
         self.0.report().map_or_else(String::new, |r| r.digest)
     }
 
-    /// All that can be measured, as JSON.
+    /// Returns all measures, as JSON.
     fn measures(&self, py: Python<'_>) -> String {
         let held = &self.0;
         py.detach(|| serde_json::to_string(&held.plant().measure()).unwrap_or_default())
     }
 
-    /// What the maker was asked for, as JSON.
+    /// Returns the options of the maker, as JSON.
     fn spec(&self) -> String {
         let json = match self.0.maker() {
             Some(Maker::Sketch(s)) => burgeon::spec::to_json(&s.sketch),
@@ -119,40 +119,45 @@ impl RawPlant {
         json.to_string()
     }
 
-    /// A column of the tables; those of nodes without a copy.
+    /// Returns a column of the tables; those of nodes without a copy.
     fn column(&self, name: &str) -> PyResult<Column> {
         let plant = self.0.plant();
         let owner = || -> Owner { self.0.clone() };
         let (axes, organs) = (&plant.axes, &plant.organs);
-        let vector = |f: fn(&Organ) -> burgeon::glam::DVec3| of(organs.iter().map(move |o| f(o).to_array()));
+        let vector = |f: fn(&Organ) -> burgeon::glam::DVec3| {
+            collect_column(organs.iter().map(move |o| f(o).to_array()))
+        };
         Ok(match name {
-            "node_position" => Column::of(owner(), &plant.nodes.position),
-            "node_radius" => Column::of(owner(), &plant.nodes.radius_m),
-            "node_axis" => Column::of(owner(), &plant.nodes.axis),
-            "axis_part" => of(axes.iter().map(|a| burgeon::part_of_axis(a.kind))),
-            "axis_bearer" => of(axes.iter().map(|a| handle(a.bearer.map(|n| n.raw())))),
+            "node_position" => Column::from_rows(owner(), &plant.nodes.position),
+            "node_radius" => Column::from_rows(owner(), &plant.nodes.radius_m),
+            "node_axis" => Column::from_rows(owner(), &plant.nodes.axis),
+            "axis_part" => collect_column(axes.iter().map(|a| burgeon::part_of_axis(a.kind))),
+            "axis_bearer" => collect_column(axes.iter().map(|a| handle(a.bearer.map(|n| n.raw())))),
             "axis_parent" => {
                 let parent = |n: burgeon::plant::NodeId| plant.nodes.axis.get(n.index()).map(|a| a.raw());
-                of(axes.iter().map(|a| handle(a.bearer.and_then(parent))))
+                collect_column(axes.iter().map(|a| handle(a.bearer.and_then(parent))))
             }
-            "axis_order" => of(axes.iter().map(|a| a.order)),
-            "axis_first" => of(axes.iter().map(|a| a.nodes.start)),
-            "axis_end" => of(axes.iter().map(|a| a.nodes.end)),
-            "axis_stroke" => of(axes.iter().map(|a| handle(a.source))),
-            "organ_part" => of(organs.iter().map(|o| burgeon::part_of_organ(o.kind))),
-            "organ_bearer" => of(organs.iter().map(|o| handle(o.bearer.map(|n| n.raw())))),
-            "organ_flower" => of(organs.iter().map(|o| handle(o.flower.map(|f| f.raw())))),
-            "organ_shape" => of(organs.iter().map(|o| o.shape.raw())),
-            "organ_scale" => of(organs.iter().map(|o| o.scale)),
+            "axis_order" => collect_column(axes.iter().map(|a| a.order)),
+            "axis_first" => collect_column(axes.iter().map(|a| a.nodes.start)),
+            "axis_end" => collect_column(axes.iter().map(|a| a.nodes.end)),
+            "axis_length" => Column::new(plant.axis_lengths_m()),
+            "axis_angle" => Column::new(plant.axis_angles_deg()),
+            "axis_stroke" => collect_column(axes.iter().map(|a| handle(a.source))),
+            "organ_part" => collect_column(organs.iter().map(|o| burgeon::part_of_organ(o.kind))),
+            "organ_bearer" => collect_column(organs.iter().map(|o| handle(o.bearer.map(|n| n.raw())))),
+            "organ_flower" => collect_column(organs.iter().map(|o| handle(o.flower.map(|f| f.raw())))),
+            "organ_shape" => collect_column(organs.iter().map(|o| o.shape.raw())),
+            "organ_scale" => collect_column(organs.iter().map(|o| o.scale)),
             "organ_position" => vector(|o| o.frame.origin),
             "organ_along" => vector(|o| o.frame.along),
             "organ_normal" => vector(|o| o.frame.normal),
-            "organ_stroke" => of(organs.iter().map(|o| handle(o.source))),
+            "organ_area" => Column::new(plant.organ_areas_m2()),
+            "organ_stroke" => collect_column(organs.iter().map(|o| handle(o.source))),
             other => return Err(PyKeyError::new_err(format!("a plant has no column {other:?}"))),
         })
     }
 
-    /// The branches up to an order, as JSON, with the paths that name them in edits.
+    /// Returns the branches up to an order, as JSON, with the paths that name them in edits.
     fn branches(&self, most_order: u32) -> String {
         serde_json::to_string(&burgeon::branch_rows(self.0.plant(), most_order)).unwrap_or_default()
     }
@@ -161,7 +166,7 @@ impl RawPlant {
         RawModel::of_plant(Arc::clone(&self.0))
     }
 
-    /// A coarser copy of the model.
+    /// Returns a coarser copy of the model.
     fn level(&self, py: Python<'_>, level: u32) -> PyResult<RawModel> {
         if level > 6 {
             return Err(beyond("level", level, "0 to 6"));
@@ -176,24 +181,25 @@ impl RawPlant {
         Ok(RawModel::new(made.map_err(|e: SceneError| refused(py, &e))?))
     }
 
-    /// What the triangles of each part of the model lie on: part, axis, organ.
+    /// Returns the part, axis and organ of each triangle, for each part of the model.
     fn labels(&self, py: Python<'_>) -> PyResult<Vec<Column>> {
         let held = Arc::clone(&self.0);
         let labels = aside(py, move || burgeon::triangle_labels(held.plant(), held.model(), held.layout()))?;
         Ok(labels.into_iter().map(Column::new).collect())
     }
 
-    /// What a person would have drawn of it: of each line its kind, its points and the row of its axis or organ.
+    /// Returns a drawing of the plant, as a person would draw it: kind and points of each line, and the row of its
+    /// axis or organ.
     fn drawing(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, Column, i32)>> {
         let held = &self.0;
         let made =
             compute(py, held.budget, |run| burgeon::drawn((held.plant(), held.model(), held.layout()), run))?;
         let lines = made.map_err(|e| refused(py, &e))?.into_iter();
-        let points = |line: &DrawnLine| of(line.points.iter().map(|p| p.to_array()));
+        let points = |line: &DrawnLine| collect_column(line.points.iter().map(|p| p.to_array()));
         Ok(lines.map(|line| (line.kind.word(), points(&line), line.row)).collect())
     }
 
-    /// Points as a scanner sees them.
+    /// Returns the points that a scanner measures.
     fn survey<'py>(&self, py: Python<'py>, scan: Scan) -> PyResult<Bound<'py, PyDict>> {
         let (spec, seed) = scan.spec();
         let held = &self.0;
@@ -204,7 +210,7 @@ impl RawPlant {
         cloud(py, made.map_err(|e| refused(py, &e))?)
     }
 
-    /// Light on each axis and organ: columns, and figures as JSON.
+    /// Returns the light on each axis and organ: columns, and figures as JSON.
     fn light<'py>(&self, py: Python<'py>, asked: LightAsked) -> PyResult<(Bound<'py, PyDict>, String)> {
         let held = &self.0;
         let made = compute(py, held.budget, |run| {
@@ -215,7 +221,7 @@ impl RawPlant {
         crate::light::columns(py, made)
     }
 
-    /// The structure as a file, in one of the words of [`StructureFormat`].
+    /// Returns the structure as a file, in a format of [`StructureFormat`] by its word.
     fn structure<'py>(
         &self,
         py: Python<'py>,
@@ -231,7 +237,7 @@ impl RawPlant {
         bytes_of(py, move |bytes| burgeon::write_structure(held.plant(), wanted, &spec, bytes))
     }
 
-    /// The plant after more edits by hand: the list of edits of an edits file.
+    /// Returns the plant after more edits by hand, given as the list of an edits file.
     fn shape(&self, py: Python<'_>, edits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let edits = json_of(edits, "edits")?;
         let edits: Vec<burgeon::shape::HandEdit> = burgeon::spec::through_json::from_text(&edits.to_string())
@@ -240,33 +246,28 @@ impl RawPlant {
             edit.check().map_err(|why| unusable(py, &format!("edits[{k}] ({}): {why}", edit.word())))?;
         }
         let id = self.0.id;
-        let edits = edits.into_iter().map(|e| burgeon::document::ShapeCommand::Add(Arc::new(e)).of(id));
+        let edits =
+            edits.into_iter().map(|e| burgeon::document::ShapeCommand::Add(Arc::new(e)).for_plant(id));
         self.0.after(py, edits).map(Self)
     }
 
-    /// The plant of other settings; `seeded`: the seed that is asked for is meant.
+    /// Returns the plant with other settings; `seeded`: the request gives the seed.
     fn again(&self, py: Python<'_>, asked: Asked<'_>, seeded: bool, day: Option<f64>) -> PyResult<Self> {
         self.0.again(py, &asked, seeded, day).map(Self)
     }
 
     /// The files of its model by its extension: names and bytes, the model's own first, then its coarser copies.
-    fn files<'py>(
-        &self,
-        py: Python<'py>,
-        extension: &str,
-        stem: &str,
-        form: Form,
-    ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        crate::write::files(py, &self.0, (extension, stem), &form)
+    fn files<'py>(&self, py: Python<'py>, extension: &str, stem: &str, form: Form) -> PyResult<Written<'py>> {
+        crate::write::files(py, &self.0, (extension, stem), form)
     }
 
-    /// The plant at a day: of flowers, and of drawings whose flowers open.
+    /// Returns the plant on a day: for flowers, and for drawings whose flowers open.
     fn at(&self, py: Python<'_>, day: f64) -> PyResult<Self> {
         self.0.must_have_document(py)?;
         let id = self.0.id;
         let command = match self.0.maker() {
-            Some(Maker::Flower(_)) => FlowerCommand::SetDay(day).of(id),
-            Some(Maker::Sketch(_)) => SketchCommand::SetDay(Some(day)).of(id),
+            Some(Maker::Flower(_)) => FlowerCommand::SetDay(day).for_plant(id),
+            Some(Maker::Sketch(_)) => SketchCommand::SetDay(Some(day)).for_plant(id),
             _ => {
                 let line = format!("a {} has no days: flowers have, and drawings of flowers", self.maker());
                 return Err(unusable(py, &line));
@@ -275,19 +276,19 @@ impl RawPlant {
         self.0.after(py, [command]).map(Self)
     }
 
-    /// Days from bud to full bloom, and from there to wilted.
+    /// Returns the days from bud to full bloom, and from there to wilted.
     #[getter]
     fn days(&self) -> Option<[f64; 2]> {
         self.0.scene.days(self.0.id, &self.0.document)
     }
 
-    /// Of a scanned tree, what became of the points, as JSON.
+    /// Returns the counts of the points of a scanned tree, as JSON.
     #[getter]
     fn found(&self) -> Option<String> {
         Some(self.0.found.as_ref()?.tally.to_string())
     }
 
-    /// How it is meshed: fineness and sides.
+    /// Returns its meshing: fineness and sides.
     #[getter]
     fn surface(&self) -> Option<(f64, u32)> {
         let skin = match self.0.maker()? {
@@ -298,7 +299,7 @@ impl RawPlant {
         Some((skin.detail, skin.sides))
     }
 
-    /// Of a flower, and of a drawing whose flowers open, the day.
+    /// Returns the day of a flower, or of a drawing whose flowers open.
     #[getter]
     fn day(&self) -> Option<f64> {
         match self.0.maker()? {
@@ -308,7 +309,7 @@ impl RawPlant {
         }
     }
 
-    /// Where it stands in its document: x, y, z, turn about +Y in degrees, scale.
+    /// Returns its place in its document: x, y, z, rotation about +Y in degrees, scale.
     #[getter]
     fn place(&self) -> ([f64; 3], f64, f64) {
         if let Some(found) = &self.0.found {
@@ -318,13 +319,13 @@ impl RawPlant {
         (place.position.to_array(), place.yaw_deg, place.scale)
     }
 
-    /// Of a drawing: metres for each of its units, and the point of it that is the plant's origin.
+    /// Returns for a drawing: metres for each of its units, and the point of it that is the plant's origin.
     #[getter]
     fn front(&self) -> Option<(f64, [f64; 2])> {
         self.0.shown()?.front.map(|f| (f.metres_per_unit, f.origin.to_array()))
     }
 
-    /// The plant as a project of the Studio.
+    /// Returns the plant as a project of the Studio.
     fn project<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.0.must_have_document(py)?;
         let held = Arc::clone(&self.0);

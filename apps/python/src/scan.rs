@@ -16,7 +16,8 @@ use crate::make::Base;
 use crate::model::axes;
 use crate::plant::RawPlant;
 
-/// A scan: the bytes of a file and its extension, or points as bytes of `f64`, three each; and how a tree is sought in it.
+/// A scan and the settings of its search for a tree: the bytes of a file and its extension, or points as bytes of
+/// `f64`, three each.
 #[derive(FromPyObject)]
 pub(crate) struct Sought {
     #[pyo3(item)]
@@ -27,7 +28,7 @@ pub(crate) struct Sought {
     unit: String,
     #[pyo3(item)]
     up: String,
-    /// The two coordinates that are not up, in the order and the unit of the scan.
+    /// The two horizontal coordinates of the stem, in the order and the unit of the scan.
     #[pyo3(item)]
     at: Option<[f64; 2]>,
     #[pyo3(item)]
@@ -36,7 +37,7 @@ pub(crate) struct Sought {
     gap: Option<f64>,
 }
 
-/// A number that may be left out, within its range, metres.
+/// Returns an optional number within its range, metres.
 fn within(name: &str, value: Option<f64>, [least, most]: [f64; 2]) -> PyResult<Option<f64>> {
     match value {
         Some(value) if !(least..=most).contains(&value) => {
@@ -48,26 +49,28 @@ fn within(name: &str, value: Option<f64>, [least, most]: [f64; 2]) -> PyResult<O
 
 impl Sought {
     /// The points, metres, +Y up.
-    fn cloud(&mut self, py: Python<'_>, name: &str, report: &mut Report) -> PyResult<Vec<DVec3>> {
+    fn cloud(&mut self, py: Python<'_>, name: &str, report: &mut Report) -> PyResult<PointCloud> {
         let axes = axes(&self.unit, &self.up)?;
         let Some((bytes, extension)) = self.file.take() else {
             let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_ne_bytes);
             let row = |row: &[u8]| DVec3::new(number(&row[..8]), number(&row[8..16]), number(&row[16..]));
-            return Ok(self.points.chunks_exact(24).map(|r| axes.inward(row(r))).collect());
+            let points = self.points.chunks_exact(24).map(|r| axes.inward(row(r))).collect();
+            return Ok(PointCloud { points, ..PointCloud::default() });
         };
         let format = CloudFormat::from_extension(&extension).or_else(|| CloudFormat::sniff(&bytes));
-        let format = format
-            .ok_or_else(|| unlike(py, name, &bytes, "is no cloud (.laz, .las, .ply, .xyz, .pcd, .obj)"))?;
+        let format = format.ok_or_else(|| {
+            unlike(py, name, &bytes, "is no cloud (.laz, .las, .e57, .ply, .xyz, .pcd, .obj)")
+        })?;
         let (read, told) = aside(py, move || {
             let mut told = Report::default();
             (burgeon::formats::read_cloud(&*bytes, format, &axes, &mut told), told)
         })?;
         *report = told;
-        Ok(read.map_err(|e| unusable(py, &format!("{name}: {e}")))?.points)
+        read.map_err(|e| unusable(py, &format!("{name}: {e}")))
     }
 }
 
-/// A tree of a scan; `leaves`: the species whose leaves it gets, with the fields that are asked for.
+/// Finds the tree of a scan; `leaves`: the species whose leaves it gets, with the requested fields.
 #[pyfunction]
 pub(crate) fn tree_of_scan(
     py: Python<'_>,
@@ -83,9 +86,9 @@ pub(crate) fn tree_of_scan(
     }
     let (skin, wind) = asked.skin(py)?;
     let mut report = Report::default();
-    let mut points = sought.cloud(py, name, &mut report)?;
-    let offset = PointCloud::far_offset(&points).unwrap_or_default();
-    points.iter_mut().for_each(|p| *p -= offset);
+    let mut cloud = sought.cloud(py, name, &mut report)?;
+    let offset = PointCloud::far_offset(&cloud.points).unwrap_or_default();
+    cloud.points.iter_mut().for_each(|p| *p -= offset);
     let spec = axes(&sought.unit, &sought.up)?;
     let at = sought.at.map(|[a, b]| {
         let file = if sought.up == "y" { DVec3::new(a, 0.0, b) } else { DVec3::new(a, b, 0.0) };
@@ -100,7 +103,7 @@ pub(crate) fn tree_of_scan(
         skin: SkinSpec { wind, ..skin },
     };
     let seed = asked.seed();
-    let made = compute(py, budget, |run| make_tree_from_scan(name, &points, &options, seed, run))?;
+    let made = compute(py, budget, |run| make_tree_from_scan(name, &cloud, &options, seed, run))?;
     let (mut made, found) = made.map_err(|e| match e {
         ScannedTreeError::Stopped(stopped) => refused(py, &burgeon::SceneError::from(stopped)),
         other => unusable(py, &format!("{name}: {}", other.in_scan(&spec, offset))),
@@ -110,7 +113,7 @@ pub(crate) fn tree_of_scan(
     Ok(RawPlant(Held::lone(made, Some(Found { foot, tally: tally(&found), seed }), budget)))
 }
 
-/// What became of the points.
+/// Returns the counts of the points.
 fn tally(found: &FoundTree) -> serde_json::Value {
     let (t, i) = (&found.tally, &found.intervals);
     let pair = |i: burgeon::scan::Interval| [i.low, i.high];

@@ -28,7 +28,7 @@ use crate::compute::compute;
 use crate::fault::{beyond, misread, not_readable, refused, unusable};
 use crate::make::{Base, named_mesh};
 
-/// A height map or a mask is no larger.
+/// Largest height map or mask, in bytes.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Trees, and the specs of their species.
@@ -40,7 +40,7 @@ pub(crate) struct RawStand {
     warnings: Vec<String>,
 }
 
-/// How an inventory is read, as Python asks for it.
+/// Settings for reading an inventory, as Python requests it.
 #[derive(FromPyObject)]
 pub(crate) struct Reading<'py> {
     #[pyo3(item)]
@@ -53,7 +53,7 @@ pub(crate) struct Reading<'py> {
     bad_rows: String,
     #[pyo3(item)]
     year: Option<u32>,
-    /// The table of a ground, as a spec has it.
+    /// The table of a ground, in the form of a spec.
     #[pyo3(item)]
     ground: Bound<'py, PyDict>,
     #[pyo3(item)]
@@ -84,7 +84,7 @@ impl Reading<'_> {
     }
 }
 
-/// The stand of an inventory: the bytes of CSV or GeoJSON; `path`: what files of the ground are named beside.
+/// Reads the stand of an inventory: the bytes of CSV or GeoJSON; file names of the ground are relative to `path`.
 #[pyfunction]
 pub(crate) fn read_stand(
     py: Python<'_>,
@@ -117,11 +117,11 @@ pub(crate) fn read_stand(
         }
         Ok((stand, StandReport::from(&report), warnings))
     })?;
-    let (stand, source, warnings) = made.map_err(|e| e.told(py))?;
+    let (stand, source, warnings) = made.map_err(|e| e.into_exception(py))?;
     RawStand::new(py, stand, &Base::of_fields(path, false), source, &warnings)
 }
 
-/// The stand that grows by a spec.
+/// Grows the stand of a spec.
 #[pyfunction]
 pub(crate) fn grow_stand(py: Python<'_>, base: Base, asked: Asked<'_>) -> PyResult<RawStand> {
     let spec: ForestSpec = match base.text() {
@@ -136,7 +136,7 @@ pub(crate) fn grow_stand(py: Python<'_>, base: Base, asked: Asked<'_>) -> PyResu
         let masks = burgeon::read_masks(&spec, &files, run)?;
         Ok(grow_stand_on(&spec, &Site { ground: &ground, masks: &masks }, seed, run)?)
     })?;
-    let grown = made.map_err(|e| e.told(py))?;
+    let grown = made.map_err(|e| e.into_exception(py))?;
     let source = StandReport::from(&grown);
     RawStand::new(py, grown.stand, &base, source, &grown.report.warnings)
 }
@@ -161,22 +161,22 @@ impl RawStand {
 
 #[pymethods]
 impl RawStand {
-    /// How many trees there are.
+    /// Returns the number of trees.
     fn count(&self) -> usize {
         self.stand.trees.len()
     }
 
-    /// Words of presets, or names of specs.
+    /// Returns the words of presets, or names of specs.
     fn species(&self) -> Vec<String> {
         self.stand.species.clone()
     }
 
-    /// Easting, height and northing of the origin, metres.
+    /// Returns easting, height and northing of the origin, metres.
     fn origin(&self) -> [f64; 3] {
         self.stand.origin_m.to_array()
     }
 
-    /// A column of the trees.
+    /// Returns a column of the trees.
     fn column(&self, name: &str) -> PyResult<Column> {
         let trees = &self.stand.trees;
         let f = |of: fn(&burgeon::forest::Tree) -> f64| Column::new(trees.iter().map(of).collect::<Vec<_>>());
@@ -197,19 +197,19 @@ impl RawStand {
         })
     }
 
-    /// Where the stand comes from, and its warnings, as JSON.
+    /// Returns the origin of the stand, and its warnings, as JSON.
     fn report(&self) -> PyResult<String> {
         json(&Told { source: &self.source, warnings: &self.warnings })
     }
 
-    /// Its table as CSV.
+    /// Returns its table as CSV.
     fn csv<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let mut text = Vec::new();
         write_stand_csv(&self.stand, &mut text).map_err(|e| PyOSError::new_err(e.to_string()))?;
         Ok(PyBytes::new(py, &text))
     }
 
-    /// What is needed for its tiles.
+    /// Plans its tiles.
     fn plan(&self, py: Python<'_>, form: TilesForm<'_>) -> PyResult<RawTiles> {
         let (spec, place) = (form.spec(py)?, form.place);
         let whole = WholeForest {
@@ -220,7 +220,7 @@ impl RawStand {
         };
         let stand = Stand::clone(&self.stand);
         let made = compute(py, form.budget, |run| ForestPlan::new(stand, &self.specs, spec, run))?;
-        let plan = made.map_err(|e| StandFault::Tiles(e).told(py))?;
+        let plan = made.map_err(|e| StandFault::Tiles(e).into_exception(py))?;
         Ok(RawTiles { plan, whole, budget: form.budget })
     }
 }
@@ -236,7 +236,7 @@ fn json(value: &impl serde::Serialize) -> PyResult<String> {
     serde_json::to_string(value).map_err(|e| pyo3::exceptions::PyRuntimeError::new_err(e.to_string()))
 }
 
-/// How a stand becomes tiles, as Python asks for it.
+/// Settings for the tiles of a stand, as Python requests them.
 #[derive(FromPyObject)]
 pub(crate) struct TilesForm<'py> {
     #[pyo3(item)]
@@ -247,14 +247,14 @@ pub(crate) struct TilesForm<'py> {
     finest: u32,
     #[pyo3(item)]
     lods: u32,
-    /// Pixels, or 0 for none.
+    /// Size of the impostors' pictures in pixels, or 0 for none.
     #[pyo3(item)]
     impostor: u32,
     #[pyo3(item)]
     tile_trees: Option<u32>,
     #[pyo3(item)]
     pack: String,
-    /// Fields of how plants are meshed.
+    /// Fields of the meshing of plants.
     #[pyo3(item)]
     skin: Bound<'py, PyDict>,
     #[pyo3(item)]
@@ -279,7 +279,7 @@ impl TilesForm<'_> {
         };
         let usual = spec.look.skin;
         spec.look.skin = crate::asked::skin_on(py, &self.skin, &usual)?.0;
-        // Fields that are not saved come out as those of single plants.
+        // Fields that are not saved come back with the values of single plants.
         if !self.skin.contains("texture_size")? {
             spec.look.skin.texture_size = usual.texture_size;
         }
@@ -314,17 +314,17 @@ pub(crate) struct RawTiles {
 
 #[pymethods]
 impl RawTiles {
-    /// Every tile.
+    /// Returns every tile.
     fn tiles(&self) -> Vec<Id> {
         self.plan.tiling.tiles().iter().map(|t| (t.id.depth, t.id.x, t.id.y, t.id.level)).collect()
     }
 
-    /// Every plant that stands for a tree.
+    /// Returns every plant that represents trees.
     fn variants(&self) -> Vec<u32> {
         self.plan.used_variants().collect()
     }
 
-    /// How far plants are from their trees, as JSON.
+    /// Returns how much plants differ from their trees, as JSON.
     fn report(&self) -> PyResult<String> {
         let (own, mut told) = (&self.plan.misfits, Report::default());
         own.tell(&mut told);
@@ -343,15 +343,15 @@ impl RawTiles {
         }))
     }
 
-    /// Notes files that other processes have put into a folder, which says from now on that it is not finished.
+    /// Records files that other processes have put into a folder, and marks the folder as unfinished.
     fn adopt(&self, py: Python<'_>, folder: PathBuf, files: Vec<(String, String, u64)>) -> PyResult<()> {
         let files = files.into_iter().map(|(file, digest, bytes)| TileFile { file, digest, bytes }).collect();
         let made =
             py.detach(|| TileFolder::open(FolderDisk::new(&folder, true)?, &self.plan.key())?.adopt(files));
-        made.map_err(|e| e.told(py))
+        made.map_err(|e| e.into_exception(py))
     }
 
-    /// Writes the models of some plants, or some tiles, for a folder that another process keeps; their files.
+    /// Writes the models of some plants, or some tiles, for a folder that another process keeps; returns their files.
     fn part(
         &self,
         py: Python<'_>,
@@ -380,7 +380,7 @@ impl RawTiles {
             }
             Ok(folder.files().cloned().collect())
         })?;
-        let files = files.map_err(|e| e.told(py))?;
+        let files = files.map_err(|e| e.into_exception(py))?;
         Ok(files.into_iter().map(|own| (own.file, own.digest, own.bytes)).collect())
     }
 
@@ -393,10 +393,10 @@ impl RawTiles {
             let writer = TileWriter { plan: &self.plan, models: &models };
             writer.tiles(std::slice::from_ref(tile), &mut folder, run, &|_, _| ())
         })?;
-        made.map_err(|e| e.told(py))
+        made.map_err(|e| e.into_exception(py))
     }
 
-    /// Writes all that is not there yet, and what readers open.
+    /// Writes all missing files, and the file that readers open.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
         let made = compute(py, self.budget, |run| -> Result<(), StandFault> {
             let mut folder = TileFolder::open(FolderDisk::new(&folder, true)?, &self.plan.key())?;
@@ -408,11 +408,11 @@ impl RawTiles {
             folder.disk().place_last()?;
             folder.end()
         })?;
-        made.map_err(|e| e.told(py))
+        made.map_err(|e| e.into_exception(py))
     }
 }
 
-/// Files beside another one.
+/// Files whose names are relative to another file.
 struct Beside {
     naming: PathBuf,
     trust: Trust,
@@ -441,9 +441,9 @@ impl SiteFiles for Beside {
 /// The folder of a tileset.
 struct FolderDisk {
     path: PathBuf,
-    /// Another process writes the journal where this is false.
+    /// Whether this process writes the journal; if not, another one does.
     has_journal: bool,
-    /// Drafts of the last step, and where they come to lie.
+    /// Drafts of the last step, and their final places.
     last: Vec<(PathBuf, PathBuf)>,
 }
 
@@ -461,7 +461,7 @@ impl FolderDisk {
         Ok(Self { path: path.to_path_buf(), has_journal, last: Vec::new() })
     }
 
-    /// A new file beside its place, and its name.
+    /// Creates a draft file next to its place; returns the file and both names.
     fn draft(&self, file: &str) -> Result<(File, PathBuf, PathBuf), StandFault> {
         let place = self.path.join(file);
         let folder = place.parent().unwrap_or(&self.path);
@@ -480,7 +480,7 @@ impl FolderDisk {
     }
 }
 
-/// Renames drafts; the drafts that are left go if one cannot be.
+/// Renames drafts; if one fails, the rest are deleted.
 fn put(drafts: &[(PathBuf, PathBuf)]) -> Result<(), StandFault> {
     for (k, (draft, place)) in drafts.iter().enumerate() {
         if let Err(e) = fs::rename(draft, place) {
@@ -556,7 +556,7 @@ impl TileDisk for FolderDisk {
     }
 }
 
-/// Why there is no stand, or no tiles of it.
+/// Reason why there is no stand, or why its tiles failed.
 enum StandFault {
     Inventory(InventoryError),
     Forest(ForestError),
@@ -582,8 +582,8 @@ macro_rules! faults {
 faults!(InventoryError => Inventory, ForestError => Forest, SiteError => Site, Stopped => Stopped, NamedFileError => Named, ForestTilesError => Tiles);
 
 impl StandFault {
-    /// The exception of Python.
-    fn told(self, py: Python<'_>) -> PyErr {
+    /// Returns the exception of Python.
+    fn into_exception(self, py: Python<'_>) -> PyErr {
         let stopped = || PyKeyboardInterrupt::new_err("stopped");
         match self {
             Self::Inventory(InventoryError::Cancelled(_)) | Self::Forest(ForestError::Cancelled(_)) => {

@@ -1,4 +1,4 @@
-//! What people write in Python -> JSON, which the readers of specs take.
+//! Python values -> JSON, for the readers of specs.
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -7,18 +7,18 @@ use serde_json::{Map, Number, Value};
 
 use crate::fault::beyond;
 
-/// Deeper than any spec is nested; a list that holds itself ends here.
+/// Greatest nesting, deeper than any spec; a list that holds itself ends here.
 const DEEPEST: usize = 32;
 
-/// Up to 2^53 a float tells each whole number from the next.
+/// Largest whole number up to which a float distinguishes each from the next: 2^53.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// A value as JSON; arrays and numbers of `NumPy` are taken for lists and numbers. `path`: what it is called in messages.
+/// Converts a value to JSON; arrays and numbers of `NumPy` count as lists and numbers. `path`: its name in messages.
 pub(crate) fn json_of(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
-    of(value, path, 0)
+    convert(value, path, 0)
 }
 
-fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
+fn convert(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     if depth > DEEPEST {
         return Err(beyond(path, "more", &format!("nested at most {DEEPEST} deep")));
     }
@@ -37,7 +37,7 @@ fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     }
     if value.is_instance_of::<PyFloat>() {
         let number: f64 = value.extract()?;
-        // Numbers of NumPy are often floats that count things: a field that takes whole numbers takes them.
+        // Numbers of NumPy are often floats that count things: a field of whole numbers accepts them.
         if number.fract() == 0.0 && number.abs() <= LARGEST_WHOLE {
             #[expect(clippy::cast_possible_truncation, reason = "whole, and within 2^53")]
             return Ok(Value::Number((number as i64).into()));
@@ -54,19 +54,19 @@ fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
             let Ok(name) = key.extract::<String>() else {
                 return Err(PyTypeError::new_err(format!("{path}: names of fields are text, not {key}")));
             };
-            let value = of(&value, &child(&name), depth + 1)?;
+            let value = convert(&value, &child(&name), depth + 1)?;
             fields.insert(name, value);
         }
         return Ok(Value::Object(fields));
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let rows = value.try_iter()?.enumerate();
-        let rows = rows.map(|(k, row)| of(&row?, &format!("{path}[{k}]"), depth + 1));
+        let rows = rows.map(|(k, row)| convert(&row?, &format!("{path}[{k}]"), depth + 1));
         return Ok(Value::Array(rows.collect::<PyResult<_>>()?));
     }
     if value.hasattr("tolist")? {
         let plain = value.call_method0("tolist")?;
-        return of(&plain, path, depth + 1);
+        return convert(&plain, path, depth + 1);
     }
     let kind = value.get_type();
     Err(PyTypeError::new_err(format!("{path}: a {} cannot be part of a spec", kind.name()?)))

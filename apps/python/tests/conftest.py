@@ -1,4 +1,4 @@
-"""What the tests share: the repository, the command line, small plants."""
+"""Shared fixtures of the tests: the repository, the command line, small plants."""
 
 import os
 import pathlib

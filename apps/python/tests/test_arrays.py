@@ -180,3 +180,17 @@ def test_trimesh_reads_it():
         assert (theirs[part.name].faces == part.faces).all()
     loaded = trimesh.load(trimesh.util.wrap_as_stream(tree.to_bytes("glb")), file_type="glb", process=False)
     assert sum(len(g.faces) for g in loaded.geometry.values()) == mine.triangle_count
+
+
+def test_areas_lengths_and_angles_add_up_to_the_measures(small):
+    measured = small.measures()
+    leaf = small.organs.part == bg.PARTS.index("leaf")
+    assert small.organs.area[leaf].sum() == pytest.approx(measured["leaf_area_m2"])
+    wood = np.isin(small.axes.part, [bg.PARTS.index(part) for part in ("branch", "twig", "stem")])
+    assert small.axes.length[wood].sum() == pytest.approx(measured["length_m"])
+    standing = small.axes.order == 0
+    assert np.isnan(small.axes.angle[standing]).all() and (small.axes.angle[~standing] >= 0).all()
+    layers = small.leaf_area_by_layer(0.25)
+    assert layers.sum() == pytest.approx(measured["leaf_area_m2"]) and 1 < len(layers) <= 4 * measured["height_m"] + 2
+    with pytest.raises(ValueError, match="layer must be"):
+        small.leaf_area_by_layer(0)

@@ -1,4 +1,4 @@
-"""What is wrong is told by name, value and range; nothing is half-written; the interpreter lives on."""
+"""Errors name the argument, its value and the range; no file is half-written; the interpreter survives."""
 
 import copy
 import math
@@ -363,7 +363,7 @@ def test_strided_and_foreign_arrays_are_read():
 
 
 def test_importing_is_quick():
-    """Of the processor's time, as others may use it, too. Without NumPy, which is imported with the first array."""
+    """Processor time, as others may use the machine, too. Without NumPy, which is imported with the first array."""
     code = (
         "import time; t = time.process_time(); import burgeon; t = time.process_time() - t\n"
         "import sys; print(t if 'numpy' not in sys.modules else 'numpy')"

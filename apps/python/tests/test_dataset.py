@@ -109,7 +109,7 @@ def test_a_folder_that_was_taken_meanwhile_is_left_alone(tmp_path, monkeypatch):
 
 
 def test_the_threads_of_the_program_stay_as_they_are(tmp_path):
-    """Of the program that asks: its own process computes with as many as it has set."""
+    """The number of threads of the calling program: its own process computes with as many as it has set."""
     pytest.importorskip("psutil")
     how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 3}, workers=1, progress=False)
     code = (
@@ -213,7 +213,7 @@ def test_programs_need_no_guard(tmp_path, as_file):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 def test_ctrl_c_stops_all_processes_at_once(tmp_path):
-    """Also where this process alone is told, and not all of its terminal."""
+    """Also if the signal reaches only this process, and not all of its terminal."""
     psutil = pytest.importorskip("psutil")
     how = dict(formats="glb", fields={"detail": 4.0}, shard=200, workers=2, progress=False)
     code = f"import burgeon as bg\nbg.dataset.generate('oak', 400, {str(tmp_path)!r}, **{how!r})"

@@ -1,4 +1,4 @@
-"""What a person would have drawn: lines that lie on the plant, and that the program reads as a plant again."""
+"""Line drawings lie on their plants, and the program reads them as plants again."""
 
 import json
 import pathlib
@@ -52,7 +52,7 @@ def test_a_tree_in_leaf_is_trunk_and_crown_and_a_bare_one_its_limbs(tmp_path):
 
 
 def away(points, line):
-    """How far points are from a line, at most."""
+    """Returns the greatest distance of points from a line."""
     start, way = line[:-1], np.diff(line, axis=0)
     square = np.maximum((way**2).sum(axis=1), 1e-300)
     along = np.clip(((points[:, None] - start) * way).sum(axis=2) / square, 0.0, 1.0)

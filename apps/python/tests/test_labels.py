@@ -97,7 +97,7 @@ def test_pictures_show_points_where_the_camera_projects_them(hazel, principal):
     local = np.column_stack([(columns + 0.5 - camera.cx) / camera.fx, (rows + 0.5 - camera.cy) / camera.fy, np.ones(len(rows))])
     world = (local * depth[:, None]) @ camera.pose[:3, :3] + np.array(camera.position)
     np.testing.assert_allclose(camera.project(world)[:, 0], columns + 0.5, atol=1e-3)
-    # Of leaves: the plane of the nearest triangle that the pixel is said to show.
+    # For leaves: the plane of the nearest triangle that the pixel should show.
     corners, owner = [], []
     for part, label in zip(hazel.model.parts, hazel.labels()):
         corners.append(part.vertices[part.faces].astype(float))
@@ -255,7 +255,7 @@ def test_keypoints_of_a_bare_stem_are_its_ends():
     row = int(np.flatnonzero(shot.instances == trunk + 1)[0])
     np.testing.assert_allclose(shot.keypoints[row, :, :2], wanted)
     np.testing.assert_allclose(known.insertion[trunk], tree.nodes.position[first])
-    # Where a branch begins is a node of what bears it.
+    # A branch begins at a node of its bearer.
     borne = np.flatnonzero(tree.axes.bearer >= 0)
     away = known.insertion[borne] - tree.nodes.position[tree.axes.bearer[borne]]
     assert np.abs(away).max() < 1e-9

@@ -51,7 +51,7 @@ def test_rows_belong_to_the_tables_of_the_plant(hazel):
     assert own.sum() > 20 and (light.absorbed[own] > 0).any()
     assert np.isnan(light.sunlit).all() and light.figures["unit"] == "W" and light.figures["sky"] == "overcast"
     assert set(light.to_dict()) == set(bg.Light._fields) - {"figures", "warnings"}
-    # What falls on it and does not stay is thrown back or goes through: 15 % of leaves.
+    # Light that is not absorbed is reflected or transmitted: 15 % of leaves.
     np.testing.assert_allclose(light.absorbed[own], 0.85 * light.incident[own], rtol=1e-9)
 
 

@@ -44,7 +44,7 @@ def blade(bend=0.0, colours=False):
 
 
 def trunk():
-    """A bare stem of 2 m on the ground, +z up, and a second one beside it."""
+    """A bare stem of 2 m on the ground, +z up, and a second one next to it."""
     angle, height = np.meshgrid(np.linspace(0, 6.1, 24), np.linspace(0, 3, 160))
     stem = np.stack([0.1 * np.cos(angle), 0.1 * np.sin(angle), height], axis=-1).reshape(-1, 3)
     ground = np.stack([*np.meshgrid(np.linspace(-2, 6, 80), np.linspace(-2, 2, 40)), np.zeros((40, 80))], axis=-1).reshape(-1, 3)
@@ -167,7 +167,7 @@ def seen(made):
 
 
 def tried(argument, function, given, fields):
-    """What comes out; None if it is refused with its name."""
+    """Returns the result; None if it is refused with its name."""
     try:
         return seen(function(*given, **fields))
     except (SpecError, TypeError) as error:
@@ -202,6 +202,7 @@ def test_no_argument_of_files_is_ignored(tmp_path):
         "impostor": 128,
         "pack": "quantized",
         "sway": True,
+        "engine": "isaac",
     }
     assert sorted(how) == sorted(named(bg.Plant.save))
     ignored = []
@@ -259,7 +260,7 @@ def pointers(value, path=()):
 
 
 def said(function, *given, **fields):
-    """What an error says; nothing if there is none."""
+    """Returns the message of an error; nothing if there is none."""
     try:
         function(*given, **fields)
     except Exception as error:
@@ -315,7 +316,7 @@ FILES = {
     b"PK\x03\x04" + b"\0" * 26 + b"mimetypeapplication/x-krita": "a Krita document",
     b"PK\x03\x04" + b"\0" * 26 + b"Document.archivebplist": "a Procreate document",
     b"PK\x03\x04" + b"\0" * 26 + b"word/document.xml": "a ZIP archive",
-    b"ASTM-E57": "a laser scan in E57",
+    b"ASTM-E57": "E57",
 }
 
 

@@ -1,8 +1,6 @@
-"""Plants as MJCF in MuJoCo: they load, step quickly, and stay whole in gusts. Needs `mujoco` and the command `burgeon`."""
+"""Plants as MJCF in MuJoCo: they load, step quickly, and stay whole in gusts. Needs `mujoco` and the command line."""
 
 import importlib.util
-import os
-import shutil
 import subprocess
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -11,22 +9,22 @@ import pytest
 
 mujoco = pytest.importorskip("mujoco", reason="the package `mujoco` is not there")
 ROOT = Path(__file__).resolve().parents[3]
-COMMAND = os.environ.get("BURGEON_COMMAND") or shutil.which("burgeon")
 PLANTS = {
     "oak": ["grow", "oak"],
     "rose": ["grow", "rose"],
     "tomato": ["sketch", str(ROOT / "fixtures/illustrations/01_tomato.svg")],
+    "truss": ["sketch", str(ROOT / "docs/engines/tomato.svg")],
 }
 
-pytestmark = pytest.mark.skipif(not COMMAND, reason="no command `burgeon`; BURGEON_COMMAND names one")
+pytestmark = pytest.mark.simulators
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory):
+def written(program, tmp_path_factory):
     folder = tmp_path_factory.mktemp("robots")
     for name, asked in PLANTS.items():
         for ending in ("xml", "urdf"):
-            command = [COMMAND, *asked, "-o", str(folder / f"{name}.{ending}"), "-q"]
+            command = [program, *asked, "-o", str(folder / f"{name}.{ending}"), "-q"]
             subprocess.run(command, check=True)
     return folder
 
@@ -46,6 +44,21 @@ def test_a_plant_stays_whole_in_a_minute_of_gusts(written, gust, name):
     assert 0 < made["hinges"] <= 200, made
     assert made["most_rad"] > 1e-4, "gusts move it"
     assert made["steps_a_second"] >= 1000, made
+
+
+def test_a_stalk_breaks_at_its_force_and_not_before(written, gust):
+    still = gust.run(written / "truss.xml", seconds=10.0, speed=0.0)
+    assert still["stalks"] == 9 and still["broken"] == 0 and not still["exploded"], still
+    for share, broken in [(0.5, 0), (2.0, 1)]:
+        model = mujoco.MjModel.from_xml_path(str(written / "truss.xml"))
+        data = mujoco.MjData(model)
+        weld, limit = next(iter(gust.stalks(model).items()))
+        fruit, found = model.eq_obj2id[weld], 0
+        while data.time < 0.3 and not found:
+            data.xfrc_applied[fruit, 2] = -share * limit
+            mujoco.mj_step(model, data)
+            found += gust.break_stalks(data, {weld: limit})
+        assert found == broken, share
 
 
 @pytest.mark.parametrize("name", PLANTS)

@@ -1,4 +1,4 @@
-"""What is written beside the plain model, and plants of other settings: the bytes and digests of the command line."""
+"""Files in addition to the plain model, and plants of other settings: the bytes and digests of the command line."""
 
 import os
 
@@ -19,6 +19,13 @@ ASKED = ("--seed", 3, "--age", 4, "--detail", 0.2)
         ("a.glb", {"pack": "meshopt", "impostor": 128}, ["--pack", "meshopt", "--impostor", 128]),
         ("a.glb", {"sway": True}, ["--sway"]),
         ("a.obj", {"lods": 1, "up": "z", "unit": "cm"}, ["--lods", 1, "--up", "z", "--unit", "cm"]),
+        ("a.glb", {"engine": "unity"}, ["--for", "unity"]),
+        ("a.glb", {"engine": "godot"}, ["--for", "godot"]),
+        ("a.usda", {"engine": "unreal"}, ["--for", "unreal"]),
+        ("a.glb", {"engine": "three", "lods": 0}, ["--for", "three", "--lods", 0]),
+        ("a.glb", {"engine": "blender"}, ["--for", "blender"]),
+        ("a.usda", {"engine": "isaac"}, ["--for", "isaac"]),
+        ("a.stl", {"engine": "print"}, ["--for", "print"]),
     ],
 )
 def test_files_are_those_of_the_command_line(cli, tmp_path, name, how, words):
@@ -96,6 +103,21 @@ def test_what_nothing_uses_is_refused(small, tmp_path, name, how, words):
     with pytest.raises(ValueError, match=words):
         small.save(tmp_path / name, **how)
     assert not list(tmp_path.iterdir())
+
+
+def test_what_was_set_for_a_program_is_told(small, tmp_path):
+    told = small.save(tmp_path / "a.glb", engine="unity")
+    assert told[0] == "lods 3" and "wind" in told and not (tmp_path / "a-lod3.glb").exists()
+    assert small.save(tmp_path / "b.glb", engine="unity", lods=0, pack="quantized")[0].startswith("names")
+    assert small.save(tmp_path / "c.glb") == ()
+    for how, words in [({"engine": "isaac"}, ".physics.usda, not .glb"), ({"engine": "maya"}, "unity")]:
+        with pytest.raises(ValueError, match=words):
+            small.save(tmp_path / "d.glb", **how)
+    with pytest.raises(ValueError, match="Nanite"):
+        small.save(tmp_path / "d.usda", engine="unreal", lods=1)
+    with pytest.raises(ValueError, match="one body"):
+        small.save(tmp_path / "d.stl", engine="print", lods=1)
+    assert not list(tmp_path.glob("d*"))
 
 
 def test_a_plant_is_used_after_it_was_written(tmp_path):
@@ -191,7 +213,7 @@ def test_a_tree_comes_back_from_its_cloud(oak, tmp_path):
     mine, theirs = found.measures(), oak.measures()
     assert mine["height_m"] == pytest.approx(theirs["height_m"], rel=0.02)
     assert np.abs(found.place[0]).max() < 0.05
-    # Where it stood is told, far from the origin, too; the tree is the same but for the last bits of its coordinates.
+    # Its place is reported, also far from the origin; the tree is the same but for the last bits of its coordinates.
     far = bg.scan(cloud.points[:, [0, 2, 1]] * [1, -1, 1] + [430_000.0, 5_600_000.0, 120.0], detail=0.2, textures=False)
     assert np.allclose(far.place[0], np.array([430_000, 120, -5_600_000]) + found.place[0], atol=0.02)
     assert far.measures()["height_m"] == pytest.approx(mine["height_m"], rel=0.01)

@@ -1,4 +1,4 @@
-"""What a program that uses the package looks like to a checker of types; `test_types_are_those_of_the_docs` reads it."""
+"""A program that uses the package, for a checker of types; `test_types_are_those_of_the_docs` reads it."""
 
 from typing import List, Tuple
 
@@ -26,7 +26,7 @@ words: Tuple[List[str], List[str]] = bg.presets()
 manifest = bg.dataset.generate("birch", 10, "birches", formats=("cloud", "mtg"), vary={"age": (8, 30)})
 plants: int = manifest["plants"]
 
-# What is wrong is seen before it runs.
+# The checker finds errors before the program runs.
 oak.render((64, 64), view="back")  # type: ignore[arg-type]
 oak.render((64, 64), sizes=3)  # type: ignore[call-arg]
 oak.masks("large")  # type: ignore[arg-type]

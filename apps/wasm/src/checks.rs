@@ -1,4 +1,4 @@
-//! What the checks in Node ask of the core: the same bits as natively. The page has no use for it.
+//! Functions for the checks in Node, which compare bits with native results. The page does not use them.
 
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::glam::DVec3;
@@ -11,8 +11,8 @@ use burgeon::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Makes a plant from every drawing of a file (SVG, InkML, QuickDraw ndjson or our JSON, told by its name)
-/// and returns the report's items as a JSON array.
+/// Makes a plant from every drawing of a file (SVG, InkML, QuickDraw ndjson or our JSON, recognised by its name) and
+/// returns the report's items as a JSON array.
 ///
 /// # Errors
 /// A message for people when the file cannot be read or a drawing has nothing usable.
@@ -50,7 +50,7 @@ pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, J
         }
         "json" => {
             let marks = formats::read_vein_graph(bytes)?.graph.marks(&mut report)?;
-            // As `burgeon leaf`: a graph in pixels becomes 0.1 m long.
+            // As in `burgeon leaf`: a graph in pixels becomes 0.1 m long.
             let marks = marks.scaled(0.1 / marks.length());
             make_leaf(name, &marks, &options, seed, &run)?.item
         }
@@ -68,10 +68,11 @@ pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, J
     Ok(serde_json::to_string(&item)?)
 }
 
-/// The digest of a whole flower of its species at even days from bud to wilted, as `burgeon bloom run` reports it.
+/// Returns the digest of a whole flower of its species at even days from bud to wilted, as `burgeon bloom run`
+/// reports it.
 ///
 /// # Errors
-/// A message for people for a species that is not known, or fewer than 2 frames.
+/// A message for people for an unknown species, or fewer than 2 frames.
 #[wasm_bindgen]
 pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, JsError> {
     let spec = bloom::preset(species).ok_or_else(|| JsError::new("there is no such flower"))?;
@@ -89,7 +90,7 @@ pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, Js
     Ok(digest.hex())
 }
 
-/// The digest of a drawn plant (SVG) whose flowers open, at even days from bud to wilted.
+/// Returns the digest of a drawn plant (SVG) whose flowers open, at even days from bud to wilted.
 ///
 /// # Errors
 /// A message for people for a drawing without flowers, or fewer than 2 frames.
@@ -106,16 +107,16 @@ pub fn opening_digest(name: &str, bytes: &[u8], frames: u32, seed: u64) -> Resul
     let mut digest = Digest::new();
     for k in 0..frames {
         let day = (plant.days[0] + plant.days[1]) * (f64::from(k) / f64::from(frames - 1));
-        digest.add(&plant.at(day, &law, seed, &Run::plain())?.model);
+        digest.add(&plant.make_on_day(day, &law, seed, &Run::plain())?.model);
     }
     Ok(digest.hex())
 }
 
-/// The digest of one organ's motion from a first to a last scan (XYZ in millimetres) by the law that is fitted to three
-/// scans, the middle one half way: registration, lattice, law and all.
+/// Returns the digest of one organ's motion from a first to a last scan (XYZ in millimetres) by the law that is
+/// fitted to three scans, the middle one half way: registration, lattice, law and all.
 ///
 /// # Errors
-/// A message for people when the scans make no organ.
+/// A message for people when the scans show no organ.
 #[wasm_bindgen]
 pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> Result<String, JsError> {
     let axes = ExportSpec { unit: Unit::Millimetre, ..ExportSpec::default() };
@@ -127,14 +128,14 @@ pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> R
         stages.push(bloom::Stage { day, organs: vec![organ] });
     }
     let law = bloom::fit_stages("stages", &stages, &bloom::LawSpec::default(), &Run::plain())?;
-    // As the program reads it from a file.
+    // In the form in which the program reads it from a file.
     let law = serde_json::from_str(&serde_json::to_string(&law)?)?;
     let run = Run::plain();
     let motion = bloom::Motion::new(&stages, law, bloom::MotionSpec::default(), &run)?;
     let mut digest = Digest::new();
     for k in 0..frames.max(2) {
         let day = 2.0 * (f64::from(k) / f64::from(frames.max(2) - 1));
-        let points = motion.at(day, &run)?;
+        let points = motion.points_on_day(day, &run)?;
         digest.add(&burgeon::motion_model("stages", None, &motion.organs, &points));
     }
     Ok(digest.hex())
@@ -156,11 +157,11 @@ pub fn scene_report(bytes: &[u8]) -> Result<String, JsError> {
     Ok(serde_json::to_string(&items)?)
 }
 
-/// The digest of the tree of a preset, as `burgeon grow` reports it, and the numbers of vertices and triangles of its
-/// plain surface at this detail: `digest vertices triangles`.
+/// Returns the digest of the tree of a preset, as `burgeon grow` reports it, and the numbers of vertices and
+/// triangles of its plain surface at this detail: `digest vertices triangles`.
 ///
 /// # Errors
-/// A message for people for a preset that is not known.
+/// A message for people for an unknown preset.
 #[wasm_bindgen]
 pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsError> {
     let preset = Preset::find(preset).ok_or_else(|| JsError::new("there is no such preset"))?;
@@ -171,19 +172,19 @@ pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsErr
     Ok(format!("{digest} {} {}", counts.vertices, counts.triangles))
 }
 
-/// The 1,300 markers a bud of the VR paper are more than the usual budget allows.
+/// Returns a run without limits: the 1,300 markers a bud of the VR paper exceed the usual budget.
 fn without_budget() -> Run<'static> {
     Run { budget: Budget { times: 1000.0, ..Budget::default() }, ..Run::plain() }
 }
 
-/// Guided growth in a ball of 5 m, to be measured round by round.
+/// Guided growth in a ball of 5 m, measured round by round.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct GuidedGrowth(Growing);
 
 #[wasm_bindgen]
 impl GuidedGrowth {
-    /// Grows until so many buds live, or for 200 rounds. `finer`: internodes are so many times shorter than usual.
+    /// Grows until at least `buds` buds live, or for 200 rounds. `finer`: divisor of the usual length of internodes.
     ///
     /// # Errors
     /// A message for people for numbers out of range.
@@ -199,16 +200,16 @@ impl GuidedGrowth {
         Ok(growing)
     }
 
-    /// Buds that may grow on.
+    /// Returns the number of living buds.
     #[wasm_bindgen(getter)]
     pub fn living(&self) -> u32 {
         u32::try_from(self.0.living()).unwrap_or(u32::MAX)
     }
 
-    /// Grows one round more.
+    /// Grows one more round.
     ///
     /// # Errors
-    /// A message for people where it costs more than is allowed.
+    /// A message for people if the round exceeds the budget.
     pub fn step(&mut self) -> Result<(), JsError> {
         self.0.step(&without_budget())?;
         Ok(())

@@ -1,4 +1,4 @@
-//! What the browser gives: time, a sign to stop, a place for complaints.
+//! Services of the browser: time, a sign to stop, a place for complaints.
 
 use burgeon::{Budget, CancelToken, Clock, Executor, Run};
 #[cfg(target_arch = "wasm32")]
@@ -11,7 +11,7 @@ extern "C" {
     fn now() -> f64;
     #[wasm_bindgen(js_namespace = console)]
     fn error(text: &str);
-    // Set by the worker: takes the share that is done (below 0: not known) and is true when the page wants the
+    // Set by the worker: it receives the finished share (below 0: not known) and returns true when the page wants the
     // evaluation to stop.
     #[wasm_bindgen(js_namespace = globalThis, js_name = burgeonStop)]
     fn burgeon_stop(share: f64) -> bool;
@@ -27,11 +27,11 @@ fn burgeon_stop(_share: f64) -> bool {
     false
 }
 
-/// How much a page may ask for: a tab has 4 GiB of addresses and mostly 1 to 2 GiB of memory, and one that runs out of it
-/// dies with its plant. So a quarter of the usual, 1 GiB, which is said instead.
+/// Limits of a page: a tab has 4 GiB of addresses and mostly 1 to 2 GiB of memory, and one that runs out of it dies
+/// with its plant. So the budget is a quarter of the usual, 1 GiB, and larger requests get an error.
 const BUDGET: Budget = Budget { times: 0.25, raise: None };
 
-/// Lets a panic say where it came from before the worker dies.
+/// Makes a panic report where it occurred before the worker dies.
 pub(crate) fn tell_of_panics() {
     #[cfg(target_arch = "wasm32")]
     std::panic::set_hook(Box::new(|info| error(&info.to_string())));
@@ -44,8 +44,8 @@ pub(crate) fn page_run<T>(compute: impl FnOnce(&Run<'_>) -> T) -> T {
     compute(&Run { cancel: &cancel, executor: &attentive, clock: &attentive, budget: BUDGET })
 }
 
-/// A word to the page and a look at its wish before each job, and whenever a stage looks at the clock: the only thread
-/// there is cannot be interrupted from outside.
+/// Reports to the page and checks for its wish to stop before each job, and whenever a stage reads the clock: nothing
+/// can interrupt the only thread from outside.
 struct Attentive<'a>(&'a CancelToken);
 
 impl Attentive<'_> {

@@ -10,23 +10,22 @@
 mod checks;
 mod host;
 
-use burgeon::document::{PlantId, StrokeId};
-use burgeon::formats::{ExportSpec, ModelFormat, Packing, PngCache, no_files, read_model, write_glb_packed};
+use burgeon::document::{NewStroke, PlantId, StrokeId};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::skin::OrganMaterial;
-use burgeon::{Refusal, Report, Seed, bloom};
+use burgeon::{Refusal, Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use workspace::{Column, ExportRequest, NamedFile, PenStyle, Workspace, WorkspaceError, packed};
+use workspace::{Column, EngineAsk, ExportRequest, LightAsk, PenStyle, Workspace, WorkspaceError, packed};
 
 #[cfg(any(feature = "checks", test))]
 pub use crate::checks::*;
 use crate::host::page_run;
 
-/// What can be set of trees, leaves and flowers, as JSON Schemas with meaning, unit (`x-unit`), range and default; the
-/// species of trees and flowers.
+/// Returns the options of trees, leaves and flowers, as JSON Schemas with meaning, unit (`x-unit`), range and
+/// default; and the species of trees and flowers.
 ///
 /// # Errors
 /// Never, but for our own bugs.
@@ -62,19 +61,16 @@ pub fn studio_schema() -> Result<String, JsError> {
     }))?)
 }
 
-/// A file of an export, packed where it is binary glTF.
-fn lighter((name, bytes): NamedFile) -> Result<NamedFile, WorkspaceError> {
-    if !name.ends_with(".glb") {
-        return Ok((name, bytes));
-    }
-    let (spec, mut report) = (ExportSpec::default(), Report::default());
-    let model = read_model(&bytes[..], ModelFormat::Glb, &name, &spec, &no_files, &mut report)?;
-    let mut out = Vec::new();
-    write_glb_packed(&model, Packing::Compressed, &mut PngCache::new(), &mut out)?;
-    Ok((name, out))
+/// Returns the settings of an export that a program wants: `EngineAsk` in, `EngineAnswer` out, both JSON.
+///
+/// # Errors
+/// When the program is not given files of that format.
+#[wasm_bindgen]
+pub fn settle_export(ask: &str) -> Result<String, Refused> {
+    to_json(&from_json::<EngineAsk>(ask)?.settle()?)
 }
 
-/// A `Refusal` as JSON: what the worker catches.
+/// A `Refusal` as JSON, which the worker catches.
 #[derive(Debug)]
 pub struct Refused(String);
 
@@ -86,7 +82,7 @@ impl From<Refused> for JsValue {
 
 impl From<WorkspaceError> for Refused {
     fn from(error: WorkspaceError) -> Self {
-        Self(Refusal::of(&error).into_json())
+        Self(Refusal::from_error(&error).into_json())
     }
 }
 
@@ -104,21 +100,25 @@ fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
     Ok(burgeon::spec::through_json::from_text(text)?)
 }
 
-/// `samples`: x, y (up), milliseconds, pressure of each point; NaN where not known.
+/// Makes a stroke. `samples`: x, y (up), milliseconds, pressure of each point; NaN if unknown.
 ///
 /// `pen`: `PenStyle` as JSON; empty for the pen of every sheet.
-fn stroke(mode: &str, samples: &[f64], pen: &str) -> Result<Stroke, Refused> {
-    let PenStyle { color, width, layer } = if pen.is_empty() { PenStyle::default() } else { from_json(pen)? };
+fn stroke(mode: &str, samples: &[f64], pen: &str) -> Result<NewStroke, Refused> {
+    let pen = if pen.is_empty() { PenStyle::default() } else { from_json(pen)? };
+    let PenStyle { color, width, layer, class } = pen;
     let mode: StrokeMode = from_json(&to_json(&mode)?)?;
+    let layer = layer.map(Into::into);
+    let stroke = Stroke { samples: ink(samples), mode, color, width, layer, ..Stroke::default() };
+    Ok(NewStroke { class, ..NewStroke::from(stroke) })
+}
+
+/// x, y (up), milliseconds, pressure of each point; NaN where not known. Points that are nowhere are left out.
+fn ink(samples: &[f64]) -> Vec<InkSample> {
     let known = |x: f64| x.is_finite().then_some(x);
     let samples = samples.chunks_exact(4).filter(|p| p[0].is_finite() && p[1].is_finite());
-    let samples = samples.map(|p| InkSample {
-        at: DVec2::new(p[0], p[1]),
-        time_ms: known(p[2]),
-        pressure: known(p[3]),
-    });
-    let layer = layer.map(Into::into);
-    Ok(Stroke { samples: samples.collect(), mode, color, width, layer, ..Stroke::default() })
+    let sample =
+        |p: &[f64]| InkSample { at: DVec2::new(p[0], p[1]), time_ms: known(p[2]), pressure: known(p[3]) };
+    samples.map(sample).collect()
 }
 
 fn numbers(ids: Vec<StrokeId>) -> Vec<u32> {
@@ -134,7 +134,7 @@ pub struct StudioSession(Workspace);
 
 #[wasm_bindgen]
 impl StudioSession {
-    /// An empty document.
+    /// Returns an empty document.
     #[wasm_bindgen(constructor)]
     #[expect(clippy::new_without_default, reason = "called from JavaScript only")]
     pub fn new() -> Self {
@@ -147,7 +147,7 @@ impl StudioSession {
     /// See [`Workspace::open`]: `Opened` as JSON.
     ///
     /// # Errors
-    /// What is wrong with the file and what to do.
+    /// The fault of the file, and what to do.
     pub fn open(&mut self, file_name: &str, bytes: &[u8], row: u32, fresh: bool) -> Result<String, Refused> {
         to_json(&self.0.open(file_name, bytes, row as usize, fresh)?)
     }
@@ -155,7 +155,7 @@ impl StudioSession {
     /// See [`Workspace::select`].
     ///
     /// # Errors
-    /// When it is not there.
+    /// When there is no such plant.
     pub fn select(&mut self, plant: u32) -> Result<(), Refused> {
         Ok(self.0.select(PlantId(plant))?)
     }
@@ -163,7 +163,7 @@ impl StudioSession {
     /// See [`Workspace::add_obstacle`].
     ///
     /// # Errors
-    /// What is wrong with the file, or that no tree is chosen.
+    /// The fault of the file, or that no tree is selected.
     pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), Refused> {
         Ok(self.0.add_obstacle(file_name, bytes)?)
     }
@@ -178,18 +178,18 @@ impl StudioSession {
         self.0.place_next(x);
     }
 
-    /// Corners of an obstacle that is a mesh, three to a triangle.
+    /// Returns the corners of an obstacle that is a mesh, three for each triangle.
     pub fn obstacle(&self, plant: u32, row: usize) -> Vec<f32> {
         self.0.obstacle(PlantId(plant), row)
     }
 
-    /// Starts empty and forgets everything, the history too.
+    /// Starts with an empty document and forgets everything, including the history.
     pub fn close(&mut self) {
         self.0.close();
     }
 
-    /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN where
-    /// not known; `pen`: a `PenStyle` as JSON, or empty; `shown`: pairs of a stroke and its class or null as JSON, see
+    /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN if
+    /// unknown; `pen`: a `PenStyle` as JSON, or empty; `shown`: pairs of a stroke and its class or null as JSON, see
     /// [`Workspace::add_stroke`].
     ///
     /// # Errors
@@ -204,6 +204,14 @@ impl StudioSession {
         Ok(self.0.add_stroke(stroke(mode, samples, pen)?, from_json(shown)?)?.0)
     }
 
+    /// Gives a stroke other points: `samples` as of [`Self::add_stroke`]. A step of undo of its own.
+    ///
+    /// # Errors
+    /// When the stroke is not there, or no point is finite.
+    pub fn straighten(&mut self, stroke: u32, samples: &[f64]) -> Result<(), Refused> {
+        Ok(self.0.straighten(StrokeId(stroke), ink(samples))?)
+    }
+
     /// Shows a stroke that is still being drawn; an empty one takes it away.
     ///
     /// # Errors
@@ -213,7 +221,7 @@ impl StudioSession {
         Ok(())
     }
 
-    /// Does a `Command` (JSON).
+    /// Applies a `Command` (JSON).
     ///
     /// # Errors
     /// Why it was refused.
@@ -221,7 +229,7 @@ impl StudioSession {
         Ok(self.0.run(from_json::<burgeon::document::Command>(command)?)?)
     }
 
-    /// Does an `Action` (JSON).
+    /// Applies an `Action` (JSON).
     ///
     /// # Errors
     /// Why it was refused.
@@ -229,10 +237,10 @@ impl StudioSession {
         Ok(self.0.act(&from_json(action)?)?)
     }
 
-    /// Strokes as a drawing in our JSON.
+    /// Returns strokes as a drawing in our JSON.
     ///
     /// # Errors
-    /// When none of them is there.
+    /// When there is none of them.
     pub fn copy(&self, ids: &[u32]) -> Result<String, Refused> {
         let ids: Vec<StrokeId> = ids.iter().copied().map(StrokeId).collect();
         Ok(String::from_utf8_lossy(&self.0.copy(&ids)?).into_owned())
@@ -241,7 +249,7 @@ impl StudioSession {
     /// Adds the strokes of a drawing given as text (our JSON, SVG, InkML), moved; returns their numbers.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The fault of the drawing.
     pub fn paste(&mut self, text: &str, x: f64, y: f64) -> Result<Vec<u32>, Refused> {
         Ok(numbers(self.0.paste(text, DVec2::new(x, y))?))
     }
@@ -269,7 +277,7 @@ impl StudioSession {
         Ok(self.0.wear_picture((from_json(wearer)?, strokes), from_json(material)?, png)?)
     }
 
-    /// RGBA bytes of a petal in a material (`OrganMaterial` as JSON).
+    /// Returns the RGBA bytes of a petal in a material (`OrganMaterial` as JSON).
     ///
     /// # Errors
     /// When the material cannot be read.
@@ -278,7 +286,7 @@ impl StudioSession {
         Ok(burgeon::skin::swatch(&material, width.min(512), height.min(512), &burgeon::Serial).pixels)
     }
 
-    /// The photograph's file if the page has another one, else empty.
+    /// Returns the photograph's file if the page has another one, else nothing.
     pub fn fresh_photo(&mut self) -> Vec<u8> {
         self.0.fresh_photo().map_or_else(Vec::new, |png| png.to_vec())
     }
@@ -294,12 +302,12 @@ impl StudioSession {
         to_json(&page_run(|run| self.0.variant(seed, detail, run))?)
     }
 
-    /// Goes back to the plant itself.
+    /// Returns to the plant itself.
     pub fn end_variant(&mut self) {
         self.0.end_variant();
     }
 
-    /// Pairs of points of the axes: x, y, z, order.
+    /// Returns pairs of points of the axes: x, y, z, order.
     pub fn skeleton(&self) -> Vec<f32> {
         self.0.skeleton()
     }
@@ -317,30 +325,31 @@ impl StudioSession {
     /// See [`Workspace::shape`]: `ToolKind`, `ShapeReach` and `ShapeInput` in, `ShapeAnswer` out, all JSON.
     ///
     /// # Errors
-    /// When there is no plant, or the words are not known.
+    /// When there is no plant, or the words are unknown.
     pub fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Result<String, Refused> {
         to_json(&self.0.shape(from_json(tool)?, from_json(reach)?, from_json(input)?)?)
     }
 
-    /// A branch that was picked and all that it bears: pairs of points, x, y, z and radius of each.
+    /// Returns a picked branch and all that it bears: pairs of points, x, y, z and radius of each.
     pub fn branch(&self, axis: u32) -> Vec<f32> {
         self.0.branch(axis)
     }
 
-    /// The control balls of the chosen leaf: `LeafBalls` as JSON.
+    /// Returns the control balls of the chosen leaf: `LeafBalls` as JSON.
     ///
     /// # Errors
-    /// When the chosen plant is no leaf, or makes none.
+    /// When the chosen plant is not a leaf, or makes none.
     pub fn balls(&self) -> Result<String, Refused> {
         to_json(&self.0.balls()?)
     }
 
-    /// Triangles of the meshes that a hand carries: part, first, and the one after the last, of each range.
+    /// Returns the triangles of the meshes that the tool holds: part, first, and the one after the last, of each
+    /// range.
     pub fn held_rows(&self) -> Vec<u32> {
         self.0.held_rows().to_vec()
     }
 
-    /// A small `.burgeon` file for a link: rounded, without times and photograph.
+    /// Returns a small `.burgeon` file for a link: rounded, without times and photograph.
     ///
     /// # Errors
     /// Never, but for our own bugs.
@@ -348,7 +357,7 @@ impl StudioSession {
         Ok(self.0.share()?)
     }
 
-    /// Opens a gesture: what is staged up to `commit` is one step of this name.
+    /// Opens a gesture: everything staged up to `commit` is one step of this name.
     ///
     /// # Errors
     /// While another is open.
@@ -356,7 +365,7 @@ impl StudioSession {
         Ok(self.0.begin(name)?)
     }
 
-    /// Replaces what the open gesture did by one `Command` (JSON).
+    /// Replaces the effect of the open gesture by one `Command` (JSON).
     ///
     /// # Errors
     /// Why it was refused.
@@ -369,22 +378,22 @@ impl StudioSession {
         self.0.commit();
     }
 
-    /// Closes the gesture and takes back what it did.
+    /// Closes the gesture and undoes its effect.
     pub fn abandon(&mut self) {
         self.0.abandon();
     }
 
-    /// Takes the last step back and returns its name.
+    /// Undoes the last step and returns its name.
     pub fn undo(&mut self) -> Option<String> {
         self.0.undo().map(str::to_owned)
     }
 
-    /// Does the last step that was taken back again and returns its name.
+    /// Redoes the last undone step and returns its name.
     pub fn redo(&mut self) -> Option<String> {
         self.0.redo().map(str::to_owned)
     }
 
-    /// The document as `DocumentState` (JSON), without points.
+    /// Returns the document as `DocumentState` (JSON), without points.
     ///
     /// # Errors
     /// Never, but for our own bugs.
@@ -392,18 +401,19 @@ impl StudioSession {
         to_json(&self.0.state())
     }
 
-    /// Numbers of strokes whose points the page does not have yet; they count as had from now on.
+    /// Returns the numbers of strokes whose points the page does not have yet, and counts them as fetched.
     pub fn fresh_strokes(&mut self) -> Vec<u32> {
         numbers(self.0.fresh_strokes())
     }
 
-    /// x, y (up) and pressure (NaN where not known) of each point of a stroke.
+    /// Returns x, y (up) and pressure (NaN if unknown) of each point of a stroke.
     pub fn stroke_points(&self, id: u32) -> Vec<f64> {
         let samples = self.0.stroke(StrokeId(id)).map_or(&[][..], |s| &s.samples);
         samples.iter().flat_map(|p| [p.at.x, p.at.y, p.pressure.unwrap_or(f64::NAN)]).collect()
     }
 
-    /// Large trees that are going to be grown, much coarser: an array of `PlantView` as JSON. See [`Workspace::preview_trees`].
+    /// Makes coarse previews of large trees that have to be grown: an array of `PlantView` as JSON. See
+    /// [`Workspace::preview_trees`].
     ///
     /// # Errors
     /// `cancelled`.
@@ -419,7 +429,8 @@ impl StudioSession {
         to_json(&page_run(|run| self.0.evaluate(run))?)
     }
 
-    /// What the last evaluation left for later: `SceneView` as JSON, empty if nothing. See [`Workspace::measure`].
+    /// Completes the measures that the last evaluation postponed: `SceneView` as JSON, empty if nothing. See
+    /// [`Workspace::measure`].
     ///
     /// # Errors
     /// `cancelled`.
@@ -427,37 +438,37 @@ impl StudioSession {
         page_run(|run| self.0.measure(run))?.map_or_else(|| Ok(String::new()), |view| to_json(&view))
     }
 
-    /// Three floats a vertex, metres.
+    /// Returns three floats for each vertex, metres.
     pub fn positions(&self, plant: u32, part: usize) -> Vec<f32> {
         self.0.column(PlantId(plant), part, Column::Positions).to_vec()
     }
 
-    /// Three floats a vertex.
+    /// Returns three floats for each vertex.
     pub fn normals(&self, plant: u32, part: usize) -> Vec<f32> {
         self.0.column(PlantId(plant), part, Column::Normals).to_vec()
     }
 
-    /// Two floats a vertex, v down; may be empty.
+    /// Returns two floats for each vertex, v down; may be empty.
     pub fn uvs(&self, plant: u32, part: usize) -> Vec<f32> {
         self.0.column(PlantId(plant), part, Column::Uvs).to_vec()
     }
 
-    /// Three floats a vertex, linear; may be empty.
+    /// Returns three floats for each vertex, linear; may be empty.
     pub fn colors(&self, plant: u32, part: usize) -> Vec<f32> {
         self.0.column(PlantId(plant), part, Column::Colors).to_vec()
     }
 
-    /// Three indices a triangle.
+    /// Returns three indices for each triangle.
     pub fn indices(&self, plant: u32, part: usize) -> Vec<u32> {
         self.0.indices(PlantId(plant), part).to_vec()
     }
 
-    /// RGBA bytes of a texture by its number in the last view.
+    /// Returns the RGBA bytes of a texture by its number in the last view.
     pub fn texture(&self, number: u32) -> Vec<u8> {
         self.0.texture(number).to_vec()
     }
 
-    /// The document as a `.burgeon` file.
+    /// Returns the document as a `.burgeon` file.
     ///
     /// # Errors
     /// Never, but for our own bugs.
@@ -465,7 +476,7 @@ impl StudioSession {
         Ok(self.0.save()?)
     }
 
-    /// What is shown as a file, or a zip of several: `ExportRequest` as JSON.
+    /// Exports the visible plants as a file, or a zip of several: `ExportRequest` as JSON.
     ///
     /// # Errors
     /// When there is nothing to export.
@@ -474,16 +485,12 @@ impl StudioSession {
         Ok(packed(request.format, page_run(|run| self.0.export(&request, run))?)?)
     }
 
-    /// What [`Workspace::export`] writes, with the models in binary glTF packed as `burgeon convert --pack meshopt` packs them:
-    /// without levels in one file and without joints.
+    /// See [`Workspace::printed`]: `PrintFigures` as JSON, or null.
     ///
     /// # Errors
-    /// When there is nothing to export.
-    pub fn export_packed(&mut self, request: &str) -> Result<Vec<u8>, Refused> {
-        let request = ExportRequest { one_file: false, sway: false, ..from_json(request)? };
-        let files = page_run(|run| self.0.export(&request, run))?;
-        let files: Result<Vec<NamedFile>, WorkspaceError> = files.into_iter().map(lighter).collect();
-        Ok(packed(request.format, files?)?)
+    /// Never, but for our own bugs.
+    pub fn printed(&self) -> Result<String, Refused> {
+        to_json(&self.0.printed())
     }
 
     /// See [`Workspace::preview_export`]: `ExportRequest` in, `ExportView` out, both JSON.
@@ -495,15 +502,24 @@ impl StudioSession {
         to_json(&page_run(|run| self.0.preview_export(&request, level, run))?)
     }
 
-    /// A column of the export that is shown: 0 positions, 1 normals, 2 texture coordinates, 3 colours, 4 wind,
-    /// 5 pivots.
+    /// See [`Workspace::light`]: `LightAsk` in, `LightView` out, both JSON.
+    ///
+    /// # Errors
+    /// `cancelled`, or why there is no light.
+    pub fn light(&mut self, asked: &str) -> Result<String, Refused> {
+        let asked: LightAsk = from_json(asked)?;
+        to_json(&page_run(|run| self.0.light(&asked, run))?)
+    }
+
+    /// Returns a column of the shown export or the plants in light: 0 positions, 1 normals, 2 texture coordinates, 3 colours, 4 wind, 5
+    /// pivots.
     pub fn exported_column(&self, model: usize, part: usize, column: usize) -> Vec<f32> {
         use Column::{Colors, Normals, Pivots, Positions, Uvs, Wind};
         let column = [Positions, Normals, Uvs, Colors, Wind, Pivots].get(column);
         column.map_or_else(Vec::new, |&c| self.0.exported_column(model, part, c).to_vec())
     }
 
-    /// Three indices a triangle of the export that is shown.
+    /// Returns three indices for each triangle of the shown export.
     pub fn exported_indices(&self, model: usize, part: usize) -> Vec<u32> {
         self.0.exported_indices(model, part).to_vec()
     }

@@ -1,7 +1,8 @@
-//! `cargo xtask habits`: in the crate that says what strokes mean, a number that something is compared with has a name.
+//! `cargo xtask habits`: in the crate that interprets strokes, a number in a comparison has a name.
 //!
-//! A name says what it separates, in which unit and where it comes from; a bare number says nothing, and the same one gets
-//! two values in two places. Numbers of plain geometry stay: none, one, two, a half, and the three corners of a polygon.
+//! A name says what the number separates, in which unit and where it comes from; a bare number says nothing, and the
+//! same threshold gets two values in two places. Numbers of plain geometry stay: zero, one, two, a half, and the three
+//! corners of a polygon.
 
 use std::path::{Path, PathBuf};
 
@@ -12,10 +13,11 @@ use syn::{
 
 use xtask::shell::{Outcome, repository, say};
 
-/// The folder whose comparisons are looked at.
+/// The folder whose comparisons are checked.
 const FOLDER: &str = "crates/reading/src";
-/// Numbers of plain geometry; the last in counts of points only.
+/// Numbers of plain geometry.
 const PLAIN: [&str; 4] = ["0", "1", "2", "0.5"];
+/// Number of plain geometry in counts of points only.
 const CORNERS: &str = "3";
 
 /// Fails if a comparison has a number without a name.
@@ -42,7 +44,7 @@ pub(crate) fn check() -> Outcome {
     ))
 }
 
-/// The folders of crates and shells.
+/// Returns the folders of crates and shells.
 pub(crate) fn packages() -> Outcome<Vec<PathBuf>> {
     let mut all = Vec::new();
     for folder in ["crates", "apps"] {
@@ -53,7 +55,7 @@ pub(crate) fn packages() -> Outcome<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// The sources of a folder and those below.
+/// Returns the sources of a folder and those below.
 pub(crate) fn sources(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let fault = |e: &dyn core::fmt::Display| format!("{}: {e}", folder.display());
     let mut found = Vec::new();
@@ -69,7 +71,7 @@ pub(crate) fn sources(folder: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// What was seen in a source.
+/// Findings in a source.
 #[derive(Default)]
 struct Seen {
     compared: usize,
@@ -134,7 +136,7 @@ impl<'a> Visit<'a> for Seen {
         visit::visit_expr_binary(self, e);
     }
 
-    /// `(low..high).contains(&x)`.
+    /// Checks `(low..high).contains(&x)`.
     fn visit_expr_method_call(&mut self, e: &'a ExprMethodCall) {
         let receiver = match &*e.receiver {
             Expr::Paren(p) => &*p.expr,
@@ -151,7 +153,7 @@ const fn is_comparison(op: &BinOp) -> bool {
     matches!(op, BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) | BinOp::Eq(_) | BinOp::Ne(_))
 }
 
-/// The numbers of one side of a comparison, but for those of comparisons and of closures inside.
+/// Numbers of one side of a comparison, except those of comparisons and of closures inside.
 #[derive(Default)]
 struct Numbers {
     found: Vec<String>,

@@ -1,4 +1,4 @@
-//! `cargo xtask layers`: modules of a crate that use one another in a circle are one module in several files.
+//! `cargo xtask layers`: modules of a crate that use one another in a cycle are one module in several files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -9,11 +9,10 @@ use syn::{Attribute, Item, ItemMod, ItemUse, UseTree};
 
 use xtask::shell::{Outcome, repository, say};
 
-/// For each module below another, or below a crate's root, the others beside it that it uses, each with one place where it
-/// does.
+/// For each module below another, or below a crate's root, its siblings that it uses, each with one place of use.
 type Uses = BTreeMap<String, BTreeMap<String, String>>;
 
-/// Looks for circles among the modules of every crate.
+/// Searches for cycles among the modules of every crate.
 pub(crate) fn check() -> Outcome {
     let mut roots = Vec::new();
     for folder in ["crates", "apps", "."] {
@@ -40,7 +39,7 @@ pub(crate) fn check() -> Outcome {
     }
 }
 
-/// The files of a crate, each parsed once: a file is looked at for each module above it.
+/// Files of a crate, each parsed once: a file is visited for each module above it.
 #[derive(Default)]
 struct Files(BTreeMap<PathBuf, Rc<syn::File>>);
 
@@ -58,33 +57,33 @@ impl Files {
 /// A module with modules below it, or the root of a crate.
 struct Parent {
     file: PathBuf,
-    /// Where the files of the modules below it lie.
+    /// Folder of the files of the modules below it.
     folder: PathBuf,
     /// Its path from the root.
     module: Vec<String>,
 }
 
 impl Parent {
-    /// A module in a file of its own; `module`: its path from the root.
+    /// Returns a module in a file of its own; `module`: its path from the root.
     fn new(file: &Path, module: Vec<String>) -> Self {
         let is_folder = file.file_name().is_some_and(|n| n == "mod.rs" || n == "lib.rs" || n == "main.rs");
         let folder = if is_folder { file.parent().unwrap_or(file).into() } else { file.with_extension("") };
         Self { file: file.into(), folder, module }
     }
 
-    /// The file of a module below it, if it has one.
+    /// Returns the file of a module below it, if it has one.
     fn child(&self, name: &str) -> Option<PathBuf> {
         let own = [self.folder.join(format!("{name}.rs")), self.folder.join(name).join("mod.rs")];
         own.into_iter().find(|p| p.is_file())
     }
 
-    /// What comes after its own path, of a path from the root.
+    /// Returns the part of a path from the root that follows its own path.
     fn below<'a>(&self, path: &'a [String]) -> &'a [String] {
         path.strip_prefix(&self.module[..]).unwrap_or_default()
     }
 }
 
-/// The root of a crate and all modules with modules below them.
+/// Returns the root of a crate and all modules with modules below them.
 fn parents(root: &Path, files: &mut Files) -> Outcome<Vec<Parent>> {
     let mut all = Vec::new();
     let mut open = vec![Parent::new(root, Vec::new())];
@@ -100,7 +99,7 @@ fn parents(root: &Path, files: &mut Files) -> Outcome<Vec<Parent>> {
     Ok(all)
 }
 
-/// Which module uses which, among those that their parent declares. Tests may use what they like.
+/// Returns which module uses which, among those that their parent declares. Tests may use any module.
 fn uses(parent: &Parent, files: &mut Files) -> Outcome<Uses> {
     let file = files.parse(&parent.file)?;
     let modules: BTreeSet<String> = declared(&file).map(|m| m.ident.to_string()).collect();
@@ -144,7 +143,7 @@ fn uses(parent: &Parent, files: &mut Files) -> Outcome<Uses> {
     Ok(all)
 }
 
-/// Modules in files of their own, without those of tests.
+/// Returns modules in files of their own, without those of tests.
 fn declared(file: &syn::File) -> impl Iterator<Item = &ItemMod> {
     file.items.iter().filter_map(|item| match item {
         Item::Mod(m) if m.content.is_none() && !is_test(&m.attrs) => Some(m),
@@ -158,7 +157,7 @@ fn is_test(attributes: &[Attribute]) -> bool {
         .any(|a| a.path().is_ident("cfg") && a.parse_args::<syn::Path>().is_ok_and(|p| p.is_ident("test")))
 }
 
-/// The paths of a `use`, one for each name.
+/// Collects the paths of a `use`, one for each name.
 fn flatten(tree: &UseTree, before: &mut Vec<String>, out: &mut Vec<Vec<String>>) {
     let whole = |name: String| before.iter().cloned().chain([name]).collect();
     match tree {
@@ -174,9 +173,9 @@ fn flatten(tree: &UseTree, before: &mut Vec<String>, out: &mut Vec<Vec<String>>)
     }
 }
 
-/// What a module and the modules below it name, from the crate's root on, and in which file.
+/// Names that a module and the modules below it use, from the crate's root on, and their files.
 struct Seen {
-    /// The module that is read, from the root.
+    /// Path from the root of the module that is visited.
     module: Vec<String>,
     paths: Vec<(Vec<String>, String)>,
 }
@@ -235,7 +234,7 @@ impl<'a> Visit<'a> for Seen {
     }
 }
 
-/// Each circle in words: modules from which every other of the circle can be reached.
+/// Describes each cycle: modules from which every other of the cycle can be reached.
 fn circles(uses: &Uses) -> Vec<String> {
     let reached = |from: &String| {
         let (mut open, mut all) = (vec![from], BTreeSet::new());
@@ -271,7 +270,7 @@ mod tests {
 
     use super::*;
 
-    fn of(files: &[(&str, &str)]) -> Vec<String> {
+    fn circles_in(files: &[(&str, &str)]) -> Vec<String> {
         static MADE: AtomicUsize = AtomicUsize::new(0);
         let number = MADE.fetch_add(1, Ordering::Relaxed);
         let folder = std::env::temp_dir().join(format!("burgeon-circles-{}-{number}", std::process::id()));
@@ -293,10 +292,10 @@ mod tests {
         let root = ("lib.rs", "mod a; mod b; mod c; pub use b::Thing;");
         let fine =
             [root, ("a.rs", "use crate::Thing;"), ("b.rs", "pub struct Thing;"), ("c.rs", "use crate::a;")];
-        assert_eq!(of(&fine), Vec::<String>::new());
+        assert_eq!(circles_in(&fine), Vec::<String>::new());
         let back = ("b/mod.rs", "mod d; #[cfg(test)] mod tests { use crate::c; }");
         let bad = [root, fine[1], fine[3], back, ("b/d.rs", "fn f() { super::super::a::g(); }")];
-        let found = of(&bad);
+        let found = circles_in(&bad);
         assert!(
             found.len() == 1 && found[0].contains("d.rs uses a::g") && found[0].contains("uses Thing"),
             "{found:?}"
@@ -314,8 +313,9 @@ mod tests {
             ("a/c.rs", "pub struct Thing;"),
             ("a/d.rs", "#[cfg(test)] mod tests { use super::super::b; }"),
         ];
-        assert_eq!(of(&fine), Vec::<String>::new());
-        let found = of(&[root, parent, fine[2], ("a/c.rs", "use crate::a::b;"), fine[4], ("none.rs", "")]);
+        assert_eq!(circles_in(&fine), Vec::<String>::new());
+        let found =
+            circles_in(&[root, parent, fine[2], ("a/c.rs", "use crate::a::b;"), fine[4], ("none.rs", "")]);
         assert!(found.len() == 1 && found[0].contains("c.rs uses b"), "{found:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Habits that no compiler checks: what dependencies may be, spelling, numbers without a name, packages that could be
+//! Habits that no compiler checks: kinds of dependencies, spelling, numbers without a name, packages that could be
 //! published.
 
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ struct Checker {
     package: &'static str,
     version: &'static str,
     program: &'static str,
-    /// The package of the same version for Python that has the program built, if there is one.
+    /// Package for Python of the same version that contains the built program, if there is one.
     wheel: Option<&'static str>,
 }
 
@@ -21,13 +21,13 @@ const DENY: Checker =
 const TYPOS: Checker =
     Checker { package: "typos-cli", version: "1.52.0", program: "typos", wheel: Some("typos") };
 
-/// Runs them all.
+/// Runs all checkers.
 pub(crate) fn check() -> Outcome {
     bare_numbers::check()?;
     if let Some(deny) = DENY.found() {
         say("$ cargo deny check licenses bans sources (deny.toml)");
         finish(prepare(&deny, &["--log-level", "error", "check", "licenses", "bans", "sources"]))?;
-        // The list of advisories lies elsewhere: it cannot be had everywhere.
+        // The list of advisories is on another host, which is not always reachable.
         say("$ cargo deny fetch db");
         match output(prepare(&deny, &["--log-level", "error", "fetch", "db"])) {
             Ok(_) => finish(prepare(&deny, &["--log-level", "error", "check", "advisories"]))?,
@@ -59,12 +59,12 @@ pub(crate) fn check() -> Outcome {
 }
 
 impl Checker {
-    /// The program: installed for this checkout, or now; none where that fails, and says so.
+    /// Returns the program: installed for this checkout, or now; `None` and a message where that fails.
     fn found(&self) -> Option<PathBuf> {
         if let Some(program) = self.wheel.and_then(|wheel| self.unpacked(wheel)) {
             return Some(program);
         }
-        // It runs for a second: what it takes to build counts.
+        // It runs for a second, so the time to build it matters.
         match installed((self.package, self.program), self.version, &[], "0") {
             Ok(program) => Some(program),
             Err(e) => {
@@ -74,8 +74,8 @@ impl Checker {
         }
     }
 
-    /// The program of a wheel, into the cache if it is not there: in seconds, where building it takes minutes. None where
-    /// there is no Python for it.
+    /// Returns the program of a wheel, unpacked into the cache if it is not there: in seconds, where building it takes
+    /// minutes. `None` where there is no Python for it.
     fn unpacked(&self, wheel: &str) -> Option<PathBuf> {
         let root = cache_dir().join(format!("{}-{}-wheel", self.program, self.version));
         let program = root.join("bin").join(self.program);

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use xtask::shell::{Outcome, cargo_path, output, prepare, repository, say};
 
-/// Words that only shells may use: everything below runs in a browser, on any thread count, with the same bits.
+/// Words that only shells may use: all code below runs in a browser, on any thread count, with the same bits.
 const BANNED: &[(&str, &str)] = &[
     ("std::fs", "files belong to the shells"),
     ("std::net", "the network belongs to the shells"),
@@ -24,7 +24,7 @@ const BANNED: &[(&str, &str)] = &[
     ("HashSet", "iterates in another order each time: use BTreeSet or a sorted Vec"),
 ];
 
-/// Compares `cargo metadata` with the table, looks for banned words, and checks kurbo's features.
+/// Compares `cargo metadata` with the table, searches for banned words, and checks kurbo's features.
 pub(crate) fn check() -> Outcome {
     let architecture = read(&repository().join("ARCHITECTURE.md"))?;
     let allowed = table(&architecture);
@@ -51,7 +51,7 @@ fn read(path: &Path) -> Outcome<String> {
     std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// Rows ``| `crate` | `a`, `b` | ...`` of the document: a crate and the crates that it may use.
+/// Parses rows ``| `crate` | `a`, `b` | ...`` of the document: a crate and the crates that it may use.
 fn table(document: &str) -> BTreeMap<String, Vec<String>> {
     let quoted =
         |cell: &str| -> Vec<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
@@ -65,7 +65,7 @@ fn table(document: &str) -> BTreeMap<String, Vec<String>> {
         .collect()
 }
 
-/// Edges between our crates that the table does not allow, and crates that it does not name.
+/// Returns edges between our crates that the table does not allow, and crates that it does not name.
 fn edges(metadata: &Value, allowed: &BTreeMap<String, Vec<String>>) -> Vec<String> {
     let mut faults = Vec::new();
     let packages = metadata["packages"].as_array().into_iter().flatten();
@@ -93,7 +93,7 @@ fn edges(metadata: &Value, allowed: &BTreeMap<String, Vec<String>>) -> Vec<Strin
     faults
 }
 
-/// Banned words outside comments and tests.
+/// Finds banned words outside comments and tests.
 fn banned_words(folder: &Path, faults: &mut Vec<String>) -> Outcome {
     let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
@@ -116,7 +116,7 @@ fn banned_words(folder: &Path, faults: &mut Vec<String>) -> Outcome {
     Ok(())
 }
 
-/// kurbo's `std` feature calls the platform's maths library, which breaks bit-identity.
+/// Reports kurbo's `std` feature, which calls the platform's maths library and so breaks bit-identity.
 fn kurbo_with_std(metadata: &Value) -> Option<String> {
     let nodes = metadata["resolve"]["nodes"].as_array()?;
     let mut kurbo = nodes.iter().filter(|n| n["id"].as_str().is_some_and(|id| id.contains("kurbo@")));

@@ -1,4 +1,4 @@
-//! `cargo xtask layers`: no two crates export a type of the same name, where a user could take one for the other.
+//! `cargo xtask layers`: no two crates export types of the same name, which a user could confuse.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -8,7 +8,7 @@ use syn::{Item, ItemUse, UseTree, Visibility};
 use crate::bare_numbers::packages;
 use xtask::shell::{Outcome, repository, say};
 
-/// Names that several crates may have, which crates these are, and why.
+/// Names that several crates may have, with these crates, and the reason.
 const ALLOWED: &[(&str, &[&str], &str)] = &[
     ("Figure", &["forest", "ink"], "a measure of a tree; one painted element of a file"),
     (
@@ -35,10 +35,10 @@ const ALLOWED: &[(&str, &[&str], &str)] = &[
 const SHELLS: &str =
     "what a page is told differs from what users of npm are told, each by its own wire format";
 
-/// Which crates export each type.
+/// Crates that export each type.
 type Exports = BTreeMap<String, BTreeSet<String>>;
 
-/// Compares what the roots of all crates export.
+/// Compares the exports of the roots of all crates.
 pub(crate) fn check() -> Outcome {
     let mut exports = Exports::new();
     for package in packages()? {
@@ -59,7 +59,7 @@ pub(crate) fn check() -> Outcome {
     Err(format!("names of types:\n  {}", faults.join("\n  ")))
 }
 
-/// Names that are taken twice and may not, and rows of the table that nothing needs.
+/// Returns names that are used twice without permission, and unused rows of the table.
 fn faults(exports: &Exports, allowed: &[(&str, &[&str], &str)]) -> Vec<String> {
     let may = |name: &str, crates: &BTreeSet<String>| {
         allowed.iter().any(|(n, several, _)| *n == name && crates.iter().eq(several.iter()))
@@ -76,7 +76,7 @@ fn faults(exports: &Exports, allowed: &[(&str, &[&str], &str)]) -> Vec<String> {
     faults
 }
 
-/// The types that a crate's root has or takes from its own modules: not those of other crates.
+/// Returns the types that a crate's root has or takes from its own modules: not those of other crates.
 fn exported(root: &Path) -> Outcome<Vec<String>> {
     let file = parse(root)?;
     let modules: BTreeSet<String> = file
@@ -115,7 +115,7 @@ fn parse(path: &Path) -> Outcome<syn::File> {
     syn::parse_file(&text).map_err(|e| fault(&e))
 }
 
-/// The public types of a file.
+/// Returns the public types of a file.
 fn types_of(file: &syn::File) -> Vec<String> {
     let public = |vis: &Visibility, ident: &syn::Ident| {
         matches!(vis, Visibility::Public(_)).then(|| ident.to_string())
@@ -130,7 +130,7 @@ fn types_of(file: &syn::File) -> Vec<String> {
     file.items.iter().filter_map(named).collect()
 }
 
-/// The names that a tree of a `use` ends in.
+/// Collects the names in which a tree of a `use` ends.
 fn leaves(tree: &UseTree, names: &mut Vec<String>) {
     match tree {
         UseTree::Path(p) => leaves(&p.tree, names),
@@ -141,7 +141,7 @@ fn leaves(tree: &UseTree, names: &mut Vec<String>) {
     }
 }
 
-/// In camel case: no function, and no constant.
+/// Whether a name is in camel case: neither a function nor a constant.
 fn is_of_type(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase()) && name.contains(|c: char| c.is_ascii_lowercase())
 }
@@ -160,7 +160,7 @@ mod tests {
         let stage: (&str, &[&str], &str) = ("Stage", &["base", "bloom"], "differ");
         let found = faults(&exports, &[stage]);
         assert_eq!(found, ["Refusal is a type of npm and of workspace: rename all but one"]);
-        // A third crate is not meant by what two may do.
+        // Permission for two crates does not extend to a third.
         let third = of(&[("Stage", &["base", "bloom", "leaf"])]);
         assert_eq!(faults(&third, &[stage]).len(), 1);
         assert_eq!(faults(&of(&[("Stage", &["base"])]), &[stage]).len(), 1);

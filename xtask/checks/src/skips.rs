@@ -1,12 +1,12 @@
-//! `cargo xtask layers`: a test that is skipped says so where people see it.
+//! `cargo xtask layers`: a test that is skipped reports it where people see it.
 
 use crate::bare_numbers::{packages, sources};
 use xtask::shell::{Outcome, repository, say};
 
-/// What libtest captures of a test that passes, and so nobody reads.
+/// Output that libtest captures for a passing test, so that nobody reads it.
 const UNSEEN: [&str; 2] = ["println!(\"skip", "eprintln!(\"skip"];
 
-/// Fails if a source of `crates` or `apps` says in an unseen place that something is skipped.
+/// Fails if a source of `crates` or `apps` reports a skipped test in such output.
 pub(crate) fn check() -> Outcome {
     let mut faults = Vec::new();
     for folder in packages()?.iter().flat_map(|p| [p.join("src"), p.join("tests")]).filter(|f| f.is_dir()) {
@@ -26,7 +26,7 @@ pub(crate) fn check() -> Outcome {
     ))
 }
 
-/// The lines, from 1.
+/// Returns the numbers of the lines, from 1.
 fn unseen(text: &str) -> impl Iterator<Item = usize> {
     let of_line = |(k, line): (usize, &str)| UNSEEN.iter().any(|u| line.contains(u)).then_some(k + 1);
     text.lines().enumerate().filter_map(of_line)

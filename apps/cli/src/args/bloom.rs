@@ -17,10 +17,10 @@ use crate::failure::Outcome;
 pub(crate) enum BloomCommand {
     /// Fit growth laws to scans of several days, or to a growth table
     ///
-    /// Reads the scans that a stages file names, cleans them, splits them into organs and regions, takes the motion of the
-    /// plant between scans off, and fits logistic, Gompertz and monomolecular laws to the means of x, y and z of each region.
-    /// Organs of one kind share rate and time. A law that predicts left-out values no better than straight lines is not
-    /// determined, and says so.
+    /// Reads the scans that a stages file names, cleans them, splits them into organs and regions, removes the motion
+    /// of the plant between scans, and fits logistic, Gompertz and monomolecular laws to the means of x, y and z of
+    /// each region. Organs of one kind share rate and time. A law that predicts left-out values no better than straight
+    /// lines is reported as not determined.
     Fit(Box<FitArgs>),
     /// Make a plant's shape at any day, or the animation of all days
     ///
@@ -28,9 +28,9 @@ pub(crate) enum BloomCommand {
     /// model, a stages file (all its stages are met), a whole flower (`burgeon presets` lists them), or a drawing of
     /// flowers (.svg, .inkml, .json, .burgeon), which then open.
     Run(Box<BloomRunArgs>),
-    /// Say what a law has on any day
+    /// Evaluate a law on any day
     ///
-    /// Each law gives a value and between which values 9 of 10 new measurements lie on that day.
+    /// Prints for each law its value, and the interval in which 9 of 10 new measurements lie on that day.
     At(Box<BloomAtArgs>),
 }
 
@@ -42,28 +42,28 @@ pub(crate) struct BloomAtArgs {
     /// The law, of `burgeon bloom fit`.
     #[arg(value_name = "LAW.json")]
     pub(crate) input: PathBuf,
-    /// The day, in the count of the stages or of the table; several days: the option again.
+    /// The day, in the count of the stages or of the table; repeat the option for several days.
     #[arg(long, value_name = "D", required = true, allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1e6, 1e6))]
     pub(crate) day: Vec<f64>,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
-/// How a growth table is read.
+/// Settings for reading a growth table.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Growth table")]
 pub(crate) struct TableArgs {
-    /// The heading of the column that tells plants apart [default: plant, tree, id or subject].
+    /// The heading of the column that identifies plants [default: plant, tree, id or subject].
     #[arg(long, value_name = "COLUMN")]
     pub(crate) plant: Option<String>,
-    /// The heading of the column of sizes, of a table with several [default: size, length, height and the like].
+    /// The heading of the column of sizes, for a table with several [default: size, length, height and the like].
     #[arg(long, value_name = "COLUMN")]
     pub(crate) size: Option<String>,
-    /// Fit one curve to each group of plants, as this column tells them, and test whether one would do for all
+    /// Fit one curve to each group of plants, given by this column, and test whether one would do for all
     /// (docs/bloom.md).
     #[arg(long, value_name = "COLUMN")]
     pub(crate) by: Option<String>,
-    /// The order of dates such as 3/4/2024 [default: as one with a day after the twelfth tells].
+    /// The order of dates such as 3/4/2024 [default: found from a date after the twelfth].
     #[arg(long, value_name = "dmy|mdy", value_parser = dates)]
     pub(crate) dates: Option<DateOrder>,
     /// The sheet of a workbook [default: the first].
@@ -103,7 +103,7 @@ Examples:
   burgeon bloom fit lengths.csv -o leaves.law.json --unit mm
   burgeon bloom fit trial.xlsx -o trial.law.json --plant Seed --by treatment --plot trial.svg")]
 pub(crate) struct FitArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// The stages file, or a growth table (.csv, .tsv, .xlsx).
@@ -118,7 +118,7 @@ pub(crate) struct FitArgs {
     /// Parts of each organ from base to tip, 1 to 20.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     pub(crate) regions: u32,
-    /// Leave each stage out in turn, and print how far the model, no law, the nearest day and straight lines are from it.
+    /// Leave each stage out in turn, and print the errors of the model, no law, the nearest day and straight lines.
     #[arg(long)]
     pub(crate) leave_one_out: bool,
     /// Seed of the search for the ground, and of plants that change their groups.
@@ -147,7 +147,7 @@ pub(crate) struct FitArgs {
   burgeon bloom run my-flower.toml -o flower.glb                 a flower of your own (docs/bloom.md)
   burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
 pub(crate) struct BloomRunArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// First shape: a scan or a model; or a stages file (.toml); or a flower of `burgeon presets` such as rose, or one
@@ -184,19 +184,19 @@ pub(crate) struct BloomRunArgs {
     /// Day of END [default: the last of the law].
     #[arg(long, value_name = "D", allow_hyphen_values = true)]
     pub(crate) end_day: Option<f64>,
-    /// Measure the shape of --day against a scan of that day, in the unit and with the up axis of the stages: mean over x,
-    /// y and z (the error of Huai, Yang and Cai 2019) and Euclidean distances both ways, in millimetres.
+    /// Measure the shape of --day against a scan of that day, in the unit and with the up axis of the stages: mean over
+    /// x, y and z (the error of Huai, Yang and Cai 2019) and Euclidean distances both ways, in millimetres.
     #[arg(long, value_name = "SCAN", requires = "day")]
     pub(crate) compare: Option<PathBuf>,
-    /// Coordinates of the result: of the scanner, in which the plant is moved and turned as it was between scans, or of the
-    /// plant, as it stood in the first scan.
+    /// Coordinates of the result: of the scanner, in which the plant is moved and turned as it was between scans, or of
+    /// the plant, as it stood in the first scan.
     #[arg(long, value_enum, default_value_t = FrameWord::Scanner)]
     pub(crate) frame: FrameWord,
-    /// Make a plant of the scans, and not points: stem and stalks are axes with radii, leaves are blades. With --day, into a
-    /// folder, or of one scan alone (without --end).
+    /// Make a plant of the scans instead of points: stem and stalks are axes with radii, leaves are blades. With --day,
+    /// into a folder, or of one scan alone (without --end).
     #[arg(long, conflicts_with = "whole")]
     pub(crate) plant: bool,
-    /// Colour of what is made of scans: that of their points, where they have any, or plain.
+    /// Colour of results made of scans: that of their points, where they have any, or plain.
     #[arg(long, value_enum, default_value_t = ScanTextureWord::Scan)]
     pub(crate) texture: ScanTextureWord,
     /// Do not split scans into organs: each is one organ. Models with faces are never split.
@@ -211,8 +211,8 @@ pub(crate) struct BloomRunArgs {
     /// Seconds of an animation, above 0 to 600.
     #[arg(long, value_name = "S", default_value_t = 6.0, value_parser = |s: &str| ranged(s, 0.01, 600.0))]
     pub(crate) seconds: f64,
-    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
-    /// pictures.
+    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours,
+    /// patterns, pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
     #[arg(long, help = lists::wind(" of a whole flower or a drawing"))]
@@ -242,10 +242,10 @@ pub(crate) struct BloomRunArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// Colour of what is made of scans.
+/// Colour of results made of scans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ScanTextureWord {
-    /// Of the points, where they have colours
+    /// Colour of the points, where they have colours
     Scan,
     /// Green
     Plain,
@@ -254,9 +254,9 @@ pub(crate) enum ScanTextureWord {
 /// Coordinates of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FrameWord {
-    /// Of the scanner
+    /// Coordinates of the scanner
     Scanner,
-    /// Of the plant
+    /// Coordinates of the plant
     Plant,
 }
 
@@ -266,13 +266,13 @@ impl BloomRunArgs {
         self.film().is_some()
     }
 
-    /// The format of the animation that is written, if one is.
+    /// Returns the format of the animation that is written, if there is one.
     pub(crate) fn film(&self) -> Option<ModelFormat> {
         let format = self.output.extension().and_then(|e| ModelFormat::from_extension(e.to_str()?));
         format.filter(|f| f.row().is_written() && f.holds(Room::Morphs) && self.one_day().is_none())
     }
 
-    /// The day that is made alone: that of `--day`, or of the only scan, if a plant is made of one.
+    /// Returns the only day that is made: that of `--day`, or of the only scan, if a plant is made of one.
     pub(crate) fn one_day(&self) -> Option<f64> {
         let extension = std::path::Path::new(&self.start).extension();
         let alone = self.end.is_none() && extension.is_some_and(|e| !e.eq_ignore_ascii_case("toml"));
@@ -289,7 +289,7 @@ fn lattice(text: &str) -> Result<[usize; 3], String> {
 }
 
 impl BloomRunArgs {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         let Self { export, axes, wind, output, .. } = self;
         Settings { export, axes, wind, output: Some(output) }.settle(&self.given)
@@ -297,7 +297,7 @@ impl BloomRunArgs {
 }
 
 impl BloomCommand {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         match self {
             Self::Fit(_) | Self::At(_) => Ok(()),

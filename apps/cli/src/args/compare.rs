@@ -14,16 +14,16 @@ use super::shared::{CommonArgs, PictureArgs, ranged, seed};
   burgeon compare oak --height 15 --detail 2
   burgeon compare guided --png two.png")]
 pub(crate) struct CompareArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// What to compare.
+    /// Comparison to make.
     #[arg(value_enum)]
     pub(crate) what: CompareWord,
-    /// All side by side, seen from the front, to one scale; --size is that of each.
+    /// Picture of all of them in a row, seen from the front, to one scale; --size is that of each.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Height that all are scaled to, metres, 0.1 to 1000.
+    /// Height to which all are scaled, metres, 0.1 to 1000.
     #[arg(long, value_name = "METRES", default_value_t = 10.0, value_parser = |s: &str| ranged(s, 0.1, 1000.0))]
     pub(crate) height: f64,
     /// Fineness of the meshes, 0.1 to 8.

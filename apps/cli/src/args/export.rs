@@ -1,29 +1,28 @@
-//! How a plant is exported: the same options for every maker.
+//! Export of a plant: the same options for every maker.
 
 use burgeon::formats::{Packing, Room};
 use burgeon::skin::{FoliageStyle, SolidSpec};
-use burgeon::{EngineReport, LevelSpec};
+use burgeon::{Engine, EngineReport, LevelSpec};
 use clap::{Args, ValueEnum};
 
-use super::engine::Engine;
 use super::given::Given;
 use super::plant_format::PlantFormat;
-use super::shared::{PackWord, SkinArgs, ranged};
+use super::shared::{PackWord, SkinArgs, engine_words, ranged};
 use crate::failure::Outcome;
 
-/// What is written of a plant, whatever made it.
+/// Options for exporting a plant of any maker.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Export")]
 pub(crate) struct ExportArgs {
     /// Write what a program wants: axes, unit, levels, packing, wind and names as its importer takes them (docs/engines/README.md).
     /// Options that stand here, too, win over it.
-    #[arg(long = "for", value_enum, value_name = "ENGINE")]
+    #[arg(long = "for", value_name = "ENGINE", value_parser = engine_words())]
     pub(crate) engine: Option<Engine>,
-    /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6: each has at most half of the triangles
-    /// of the one before, as far as there are leaves to lose.
+    /// Number of coarser copies to write next to the model (OUT-lod1, OUT-lod2, ...), 0 to 6: each has at most half of
+    /// the triangles of the one before, as far as there are leaves to lose.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) lods: u32,
-    /// Where the coarser copies go: each into a file of its own, or all into the .glb (`MSFT_lod`) [default: each].
+    /// Place of the coarser copies: each in a file of its own, or all in the .glb (`MSFT_lod`) [default: each].
     #[arg(long, value_enum, value_name = "WHERE")]
     pub(crate) lod_file: Option<LodFileWord>,
     /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
@@ -33,37 +32,43 @@ pub(crate) struct ExportArgs {
     /// Let the .glb sway: an animation in a loop, with a joint for each limb (docs/exports.md).
     #[arg(long, conflicts_with_all = ["wind", "pack"])]
     pub(crate) sway: bool,
-    /// Write each leaf shape once, and where its copies stand (`EXT_mesh_gpu_instancing`): a smaller .glb that is drawn
-    /// faster, for programs that know it.
+    /// Write each leaf shape once, and the places of its copies (`EXT_mesh_gpu_instancing`): a smaller .glb that is
+    /// drawn faster, for programs that support it.
     #[arg(long, conflicts_with_all = ["wind", "sway"])]
     pub(crate) instances: bool,
-    /// How leaves are drawn: by their outlines, as cards of which the leaf is cut out, or by their level of detail: outlines,
+    /// Drawing of leaves: by their outlines, as cards with the leaf cut out, or by their level of detail: outlines,
     /// then cards, then cards of whole shoots [default: outlines].
     #[arg(long, value_enum, value_name = "HOW")]
     pub(crate) foliage: Option<FoliageWord>,
-    /// One more coarser copy, the last: views from all sides in an atlas of SIZE pixels a side, 128 to 4096
+    /// Add one more coarser copy, the last: views from all sides in an atlas of SIZE pixels a side, 128 to 4096
     /// (docs/exports.md).
     #[arg(long, value_name = "SIZE", conflicts_with_all = ["wind", "sway"],
         value_parser = clap::value_parser!(u32).range(128..=4096))]
     pub(crate) impostor: Option<u32>,
-    /// The most triangles that the model may have, 100 or more: it is the first level of detail that has no more.
+    /// Largest number of triangles of the model, 100 or more: the model is the first level of detail within it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(100..))]
     pub(crate) triangles: Option<u64>,
-    /// The most megabytes (of a million bytes) that the model's file may have, with what lies beside it: textures become
-    /// smaller first, and then the model the first level of detail that fits.
+    /// Largest size in megabytes (of a million bytes) of the model's file with the files next to it: textures become
+    /// smaller first, and then the model becomes the first level of detail that fits.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.001, 4000.0))]
     pub(crate) megabytes: Option<f64>,
-    /// Height of what --for print makes, in millimetres, 10 to 2000 [default: 150].
+    /// Height of the body for --for print, in millimetres, 10 to 2000 [default: 150].
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 10.0, 2000.0))]
     pub(crate) print_height: Option<f64>,
-    /// No part of what --for print makes is thinner than this, in millimetres, 0.2 to 20: twigs and leaves that would be are
-    /// thickened [default: 1.5].
+    /// Least thickness of all parts for --for print, in millimetres, 0.2 to 20: thinner twigs and leaves are thickened
+    /// [default: 1.5].
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.2, 20.0))]
     pub(crate) print_wall: Option<f64>,
-    /// Parts and materials are named after the plant: set for an engine.
+    /// Whether parts and materials are named after the plant: set for an engine.
     #[arg(skip)]
     pub(crate) names: bool,
-    /// What was set for an engine.
+    /// Whether levels and shapes for collisions are nodes of one file: set for an engine.
+    #[arg(skip)]
+    pub(crate) nodes: bool,
+    /// Whether it is written as a skeleton with leaves on its joints: set for an engine.
+    #[arg(skip)]
+    pub(crate) assembly: bool,
+    /// Options that were set for an engine.
     #[arg(skip)]
     pub(crate) set: Vec<String>,
 }
@@ -85,7 +90,7 @@ pub(crate) const EXPORT: [&str; 12] = [
 ];
 
 impl ExportArgs {
-    /// The body that is printed, if one is.
+    /// Returns the spec of the printed body, if there is one.
     pub(crate) fn print(&self) -> Option<SolidSpec> {
         let usual = SolidSpec::default();
         (self.engine == Some(Engine::Print)).then(|| SolidSpec {
@@ -94,46 +99,46 @@ impl ExportArgs {
         })
     }
 
-    /// What the report says of the engine.
+    /// Returns the part of the report about the engine.
     pub(crate) fn report(&self) -> Option<EngineReport> {
-        Some(EngineReport { name: self.engine?.word(), set: self.set.clone() })
+        Some(EngineReport { name: self.engine?.word().to_owned(), set: self.set.clone() })
     }
 
     pub(crate) fn packing(&self) -> Option<Packing> {
         self.pack.map(PackWord::packing)
     }
 
-    /// The coarser copies go into the model's own file.
+    /// Whether the coarser copies go into the model's own file.
     pub(crate) fn in_one_file(&self) -> bool {
         self.lod_file == Some(LodFileWord::One)
     }
 
-    /// Coarser copies with files of their own.
+    /// Returns the number of coarser copies with files of their own.
     pub(crate) fn lod_files(&self) -> u32 {
-        if self.in_one_file() { 0 } else { self.lods + u32::from(self.impostor.is_some()) }
+        if self.in_one_file() || self.nodes { 0 } else { self.lods + u32::from(self.impostor.is_some()) }
     }
 
-    /// How leaves are drawn.
+    /// Returns how leaves are drawn.
     pub(crate) fn foliage(&self) -> FoliageStyle {
         self.foliage.map_or_else(FoliageStyle::default, FoliageWord::foliage)
     }
 
-    /// Whether the size of what is written has a bound.
+    /// Whether the size of the output is limited.
     pub(crate) fn has_budget(&self) -> bool {
         self.triangles.is_some() || self.megabytes.is_some()
     }
 
-    /// What is made for a file of this format besides the finest meshes. For a budget levels are made that are not asked
-    /// for, as the model may become one of them.
+    /// Returns the levels for a file of this format in addition to the finest meshes. For a budget, levels are made
+    /// that nobody asked for, as the model may become one of them.
     pub(crate) fn levels(&self, format: Option<PlantFormat>) -> LevelSpec {
         if !matches!(format, Some(PlantFormat::Model(_))) {
             return LevelSpec::default();
         }
         let lods = if self.has_budget() { MOST_LODS } else { self.lods };
-        LevelSpec { lods, copies: self.instances, impostor: self.impostor }
+        LevelSpec { lods, copies: self.instances, impostor: self.impostor, assembly: self.assembly }
     }
 
-    /// Fails on options that nothing uses. `format`: of the plant that is written. `picture`: one is made.
+    /// Fails on unused options. `format`: of the written plant. `picture`: whether one is made.
     pub(crate) fn check_used(
         &self,
         given: &Given,
@@ -145,6 +150,11 @@ impl ExportArgs {
         if print {
             let whole = "a print is one body";
             given.refuse(&["lods", "foliage", "triangles"], "models with levels of detail", whole)?;
+        }
+        if self.assembly {
+            let nanite = "Nanite makes levels itself";
+            let options = ["lods", "triangles", "megabytes", "impostor"];
+            given.refuse(&options, "models with levels of detail", nanite)?;
         }
         let holds = |room| format.is_some_and(|format| format.holds(room));
         let rooms = [
@@ -180,10 +190,10 @@ impl ExportArgs {
     }
 }
 
-/// Levels of detail that there are.
+/// Largest number of levels of detail.
 const MOST_LODS: u32 = 6;
 
-/// How leaves are drawn.
+/// Drawing of leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FoliageWord {
     /// By their outlines
@@ -204,16 +214,16 @@ impl FoliageWord {
     }
 }
 
-/// Where coarser copies go.
+/// Place of coarser copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LodFileWord {
-    /// Beside the model: OUT-lod1, OUT-lod2, ...
+    /// Next to the model: OUT-lod1, OUT-lod2, ...
     Each,
     /// Into the model's own file, as levels of its node
     One,
 }
 
-/// How a plant is meshed and exported.
+/// Options for meshing and exporting a plant.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct TreeSurfaceArgs {
@@ -224,7 +234,7 @@ pub(crate) struct TreeSurfaceArgs {
 }
 
 impl TreeSurfaceArgs {
-    /// How the meshes are made; what sways needs the columns of the wind.
+    /// Returns the settings of the meshes; a swaying model needs wind columns.
     pub(crate) fn spec(&self) -> burgeon::skin::SkinSpec {
         let skin = self.skin.spec();
         burgeon::skin::SkinSpec {
@@ -234,7 +244,7 @@ impl TreeSurfaceArgs {
         }
     }
 
-    /// Fails on options that nothing uses.
+    /// Fails on unused options.
     pub(crate) fn check_used(&self, given: &Given, format: Option<PlantFormat>, picture: bool) -> Outcome {
         self.export.check_used(given, (format, picture), self.skin.paints())
     }

@@ -16,7 +16,7 @@ use super::structure::StructureArgs;
   burgeon render tree.glb -o tree.png --background transparent --no-shadow
   burgeon render walnut.mtg -o walnut.png --in-unit cm --thickness-unit mm")]
 pub(crate) struct RenderArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     #[arg(value_name = "MODEL", help = lists::render_input())]
@@ -33,7 +33,7 @@ pub(crate) struct RenderArgs {
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
     pub(crate) structure: StructureArgs,
-    /// Which plant of a file that holds the structure of several: its number from 1.
+    /// Number, from 1, of the plant in a file with the structure of several.
     #[arg(long, value_name = "N")]
     pub(crate) plant: Option<String>,
     #[command(flatten)]
@@ -48,20 +48,20 @@ pub(crate) struct RenderArgs {
   burgeon convert cylinders.csv -o tree.mtg                      from a table of cylinders to an MTG
   burgeon convert tree.mtg -o tree.qsm.csv")]
 pub(crate) struct ConvertArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// The file to read.
     #[arg(value_name = "IN")]
     pub(crate) input: PathBuf,
-    /// The file to write; its extension says the format.
+    /// The file to write; its extension gives the format.
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
     pub(crate) structure: StructureArgs,
-    /// Which plant of a file that holds the structure of several: its number from 1.
+    /// Number, from 1, of the plant in a file with the structure of several.
     #[arg(long, value_name = "N")]
     pub(crate) plant: Option<String>,
     /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
@@ -82,7 +82,7 @@ pub(crate) struct ConvertArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     #[arg(value_name = "FILE", help = lists::info_input())]
@@ -111,9 +111,9 @@ pub(crate) struct StudioArgs {
     /// Open no browser.
     #[arg(long)]
     pub(crate) no_open: bool,
-    /// Serve the network instead of this machine: https, and only browsers that have the link, the QR code or the code
-    /// that are shown, each of which works once. A project that is opened is written back to its file. ADDR: the address
-    /// of this machine in that network [default: that of the way out].
+    /// Serve the network instead of this machine: https, and only for browsers that have the link, the QR code or the
+    /// code that are shown, each of which works once. A project that is opened is written back to its file. ADDR: the
+    /// address of this machine in that network [default: that of its outgoing connection].
     #[arg(long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     pub(crate) lan: Option<String>,
     /// The folder of a built Studio [default: the one in the program].

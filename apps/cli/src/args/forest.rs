@@ -10,7 +10,7 @@ use clap::Args;
 
 use super::export::FoliageWord;
 use super::given::Given;
-use super::shared::{CommonArgs, PackWord, of, ranged, seed, whole};
+use super::shared::{CommonArgs, PackWord, parse_field, ranged, seed, whole};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -22,13 +22,13 @@ use super::shared::{CommonArgs, PackWord, of, ranged, seed, whole};
   burgeon forest stand.toml -o wood --map wood.png                  a stand that grows (docs/tiles.md)
   burgeon forest trees.csv -o one --tile 2,1,3,0                   a tile alone, the same bytes")]
 pub(crate) struct ForestArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// The trees: an inventory (.csv, .geojson), or the spec of a stand that grows (.toml).
     #[arg(value_name = "INVENTORY")]
     pub(crate) input: PathBuf,
-    /// The folder of the tileset: tileset.json, tiles, models, trees.csv, manifest.json. A run that was interrupted goes on
+    /// The folder of the tileset: tileset.json, tiles, models, trees.csv, manifest.json. An interrupted run continues
     /// where it stopped.
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
@@ -44,19 +44,20 @@ pub(crate) struct ForestArgs {
     /// Level of detail of --glb and --usd, from --finest to --lods [default: the second finest].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) level: Option<u32>,
-    /// Write this tile alone, by depth, column, row and level as in its file's name tiles/D/X-Y-L.glb: the same bytes as in the
-    /// whole. No tileset.json, no table.
+    /// Write only this tile, by depth, column, row and level as in its file's name tiles/D/X-Y-L.glb: the same bytes as
+    /// in the whole. No tileset.json, no table.
     #[arg(long, value_name = "D,X,Y,L", value_parser = tile, conflicts_with_all = ["glb", "usd", "map"])]
     pub(crate) tile: Option<TileId>,
-    /// Where the origin stands on the earth: longitude and latitude in degrees, and metres above the ellipsoid
-    /// [default: nowhere, a scene of its own].
+    /// Position of the origin on the earth: longitude and latitude in degrees, and metres above the ellipsoid [default:
+    /// nowhere, a scene of its own].
     #[arg(long, value_name = "LON,LAT,H", allow_hyphen_values = true, value_parser = place)]
     pub(crate) place: Option<DVec3>,
     /// Most trees of a tile of the finest level; each coarser level has four times as many
-    /// [default: a thousandth of all, 64 to 1024].
+    /// [default: a 700th of all, 64 to 1024].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub(crate) tile_trees: Option<u32>,
-    /// Plants that are grown for each species and age of the trees, 1 to 64. More look less alike, and meet diameters better.
+    /// Number of plants grown for each species and age of the trees, 1 to 64. More of them look less alike, and match
+    /// diameters better.
     #[arg(long, value_name = "K", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) variants: u32,
     /// Seed of the plants and of their choice.
@@ -72,21 +73,21 @@ pub(crate) struct ForestArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// How an inventory is read.
+/// Settings for reading an inventory.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Inventory")]
 pub(crate) struct InventoryArgs {
-    /// What coordinates are: metres, or degrees that become metres on a plane amid the trees (local) or of a zone (utm, utm32n)
-    /// [default: metres, unless the file says degrees].
+    /// Meaning of coordinates: metres, or degrees that become metres on a plane amid the trees (local) or of a zone
+    /// (utm, utm32n) [default: metres, unless the file says degrees].
     #[arg(long, value_name = "metres|local|utm|utmNNn", value_parser = crs)]
     pub(crate) crs: Option<Crs>,
-    /// Among what the trees grow, by which missing measures are filled: free or stand.
+    /// Surroundings of the trees, by which missing measures are filled: free or stand.
     #[arg(long, value_name = "free|stand", default_value = "free", value_parser = setting)]
     pub(crate) setting: Setting,
-    /// The species of rows that name none, or one that is not known [default: such rows are bad].
+    /// The species of rows that name none, or an unknown one [default: such rows are bad].
     #[arg(long, value_name = "NAME")]
     pub(crate) species: Option<String>,
-    /// What becomes of bad rows: refuse or skip.
+    /// Treatment of bad rows: refuse or skip.
     #[arg(long, value_name = "refuse|skip", default_value = "refuse", value_parser = bad_rows)]
     pub(crate) bad_rows: BadRows,
     /// The year of the inventory, for columns that say when a tree was planted.
@@ -94,12 +95,12 @@ pub(crate) struct InventoryArgs {
     pub(crate) year: Option<u32>,
 }
 
-/// What the trees of an inventory stand on.
+/// Ground of the trees of an inventory.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Ground")]
 pub(crate) struct GroundArgs {
-    /// Heights: a GeoTIFF in the projection of the inventory, a PNG of 16 bits with its middle at the origin, or a mesh in metres
-    /// with +Y up [default: heights of the inventory, or flat].
+    /// Heights: a GeoTIFF in the projection of the inventory, a PNG of 16 bits with its middle at the origin, or a mesh
+    /// in metres with +Y up [default: heights of the inventory, or flat].
     #[arg(long, value_name = "FILE")]
     pub(crate) ground: Option<PathBuf>,
     /// Side of a pixel of a PNG, metres.
@@ -108,7 +109,7 @@ pub(crate) struct GroundArgs {
     /// Heights of black and white of a PNG, metres.
     #[arg(long, value_name = "LOW,HIGH", requires = "ground", allow_hyphen_values = true, value_parser = heights)]
     pub(crate) heights: Option<[f64; 2]>,
-    /// How much trunks lean with the ground: 0 stands upright, 1 square to it [default: 0].
+    /// Lean of trunks with the ground: 0 is upright, 1 perpendicular to the ground [default: 0].
     #[arg(long, value_name = "SHARE", requires = "ground", value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) lean: Option<f64>,
 }
@@ -137,7 +138,7 @@ fn heights(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// How the plants of a forest are meshed.
+/// Options for meshing the plants of a forest.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct ForestSurfaceArgs {
@@ -147,14 +148,15 @@ pub(crate) struct ForestSurfaceArgs {
     /// The finest level, 0 to --lods: 0 shows whole plants nearby.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) finest: u32,
-    /// Pixels of the pictures that stand for trees far away, 128 to 4096, or off: 8 by 8 views from all sides.
+    /// Pixels of the pictures of distant trees, 128 to 4096, or off: 8 by 8 views from all sides.
     #[arg(long, value_name = "SIZE|off", default_value = "512", value_parser = impostor)]
     pub(crate) impostor: u32,
-    /// How leaves are drawn.
+    /// Drawing of leaves.
     #[arg(long, value_enum, value_name = "HOW", default_value_t = FoliageWord::ByLevel)]
     pub(crate) foliage: FoliageWord,
     /// Fineness of the meshes, 0.1 to 8 [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SkinSpec>(s, "detail"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SkinSpec>(s, "detail"))]
     pub(crate) detail: Option<f64>,
     /// Sides of an ordinary branch, 3 to 24 [default: 8].
     #[arg(long, value_name = "N", value_parser = |s: &str| whole::<SkinSpec>(s, "sides"))]
@@ -162,7 +164,7 @@ pub(crate) struct ForestSurfaceArgs {
     /// Pixels of a side of the textures, 64 to 4096.
     #[arg(long, value_name = "SIZE", default_value_t = 256, value_parser = clap::value_parser!(u32).range(64..=4096))]
     pub(crate) textures: u32,
-    /// How models and tiles are packed.
+    /// Packing of models and tiles.
     #[arg(long, value_enum, value_name = "HOW", default_value_t = PackWord::Meshopt)]
     pub(crate) pack: PackWord,
 }
@@ -194,7 +196,7 @@ fn place(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// A size of atlases; 0 for off.
+/// Parses a size of atlases; 0 for off.
 fn impostor(text: &str) -> Result<u32, String> {
     match text.parse() {
         _ if text == "off" => Ok(0),

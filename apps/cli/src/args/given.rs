@@ -1,4 +1,4 @@
-//! Which options stand on the command line: one that a command does not use is an error, never ignored.
+//! Options that were given on the command line: one that a command does not use is an error, never ignored.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -11,12 +11,12 @@ use super::plant_format::PlantFormat;
 use super::shared::{CommonArgs, PictureArgs, ViewWord};
 use crate::failure::{Failure, Outcome};
 
-/// The options that stand on the command line, rather than those that have a default, by the names of their fields.
+/// Options given on the command line, rather than left at their defaults, by the names of their fields.
 #[derive(Debug, Default)]
 pub(crate) struct Given(BTreeSet<String>);
 
 impl Given {
-    /// This option was given.
+    /// Whether this option was given.
     pub(crate) fn has(&self, option: &str) -> bool {
         self.0.contains(option)
     }
@@ -41,12 +41,12 @@ impl Given {
         }
     }
 
-    /// [`refuse`](Self::refuse), unless `used`.
+    /// Calls [`refuse`](Self::refuse), unless `used`.
     pub(crate) fn only_if(&self, used: bool, options: &[&str], users: &str, this: &str) -> Outcome {
         if used { Ok(()) } else { self.refuse(options, users, this) }
     }
 
-    /// [`refuse`](Self::refuse), unless a format that is written `holds` the room that these options need.
+    /// Calls [`refuse`](Self::refuse), unless the written format `holds` the room that these options need.
     pub(crate) fn only_if_holds(&self, holds: bool, options: &[&str], room: Room) -> Outcome {
         self.only_if(
             holds,
@@ -56,7 +56,7 @@ impl Given {
         )
     }
 
-    /// The options of pictures, where none is made, and those of a turntable, where one view is taken.
+    /// Refuses the options of pictures where none is made, and those of a turntable where one view is taken.
     pub(crate) fn check_picture(&self, picture: bool, args: &PictureArgs) -> Outcome {
         let all = ["size", "view", "frames", "background", "no_shadow", "supersample"];
         self.only_if(picture, &all, "pictures", "--png FILE.png, which makes one, is missing")?;
@@ -64,13 +64,13 @@ impl Given {
         self.only_if(turntable, &["frames"], "--view turntable", "the picture has one view")
     }
 
-    /// The options of axes, where no file is read or written whose axes and unit are not its format's own.
+    /// Refuses the options of axes where no file is read or written whose axes and unit are not fixed by its format.
     pub(crate) fn check_axes(&self, used: bool) -> Outcome {
         let users = "OBJ, PLY, STL, USD, MTG, QSM and other files that do not fix their axes and unit";
         self.only_if(used, &["up", "unit"], users, "none is read or written (glTF is in metres, +Y up)")
     }
 
-    /// The options of a plant's meshes, by what is made of them.
+    /// Refuses the options of a plant's meshes by the results that use them.
     pub(crate) fn check_surface(&self, seen: Seen) -> Outcome {
         let colours = ["textures", "no_textures", "materials", "petals", "variation"];
         let none = "neither a model nor a picture is made";
@@ -81,13 +81,13 @@ impl Given {
     }
 }
 
-/// Where a plant's meshes come out.
+/// Results in which a plant's meshes appear.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
     /// As a model of this format.
     pub(crate) model: Option<ModelFormat>,
     pub(crate) picture: bool,
-    /// Counted in a report.
+    /// Counts in a report.
     pub(crate) report: bool,
 }
 
@@ -101,7 +101,7 @@ impl Seen {
     }
 }
 
-// Flattened into the options of a command it sees that command's own matches and adds no option.
+// As a flattened field it sees the matches of the whole command and adds no option.
 impl FromArgMatches for Given {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let given = |id: &&clap::Id| matches.value_source(id.as_str()) == Some(ValueSource::CommandLine);

@@ -11,13 +11,13 @@ use super::export::TreeSurfaceArgs;
 use super::given::Given;
 use super::lists;
 use super::settings;
-use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, parse_field, ranged, seed};
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
 pub(crate) struct GrowArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
@@ -65,7 +65,7 @@ const GROW_EXAMPLES: &str = "Examples:
   burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
   burgeon presets --show oak > mine.toml; burgeon grow mine.toml -o mine.glb";
 
-/// What grows, and for how long.
+/// Settings of growth and its duration.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Growth")]
 pub(crate) struct GrowthArgs {
@@ -78,19 +78,26 @@ pub(crate) struct GrowthArgs {
     #[arg(long, value_name = "FILE", help = lists::leaf_template("the tree bears instead of its own"))]
     pub(crate) leaf_template: Option<PathBuf>,
     /// Share of the leaves kept, the best lit ones, 0 to 1 [default: the preset's, mostly 1].
-    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| of::<FoliageSpec>(s, "leaf_keep"))]
+    #[arg(long, value_name = "F", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<FoliageSpec>(s, "leaf_keep"))]
     pub(crate) leaf_keep: Option<f64>,
     /// The tree as it was after N rounds, years (self-organizing) or rewriting steps (lsystem) [default: full-grown].
     #[arg(long, value_name = "N")]
     pub(crate) age: Option<u32>,
-    /// The tree as it is when it is so high, in metres, within what its species reaches: at the age that comes nearest, and
-    /// scaled by what is left.
+    /// Grow the tree until it has this height, in metres, within what its species reaches: at the age that comes
+    /// nearest, and scaled by the rest.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true, conflicts_with = "age",
         value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
     pub(crate) height: Option<f64>,
-    /// The season of its leaves, -1 to 1: -1 bare, leaves unfold to 0, summer; 0.5 all in the colours of autumn, 1 bare; not
-    /// for evergreens [default: the preset's, mostly 0].
-    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| of::<TreeSpec>(s, "look.season"))]
+    /// Grow the tree until its stem has this diameter at breast height (1.3 m), in metres, within what its species reaches:
+    /// at the age that comes nearest, and scaled by the rest.
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, conflicts_with_all = ["age", "height"],
+        value_parser = |s: &str| ranged(s, 0.001, 30.0))]
+    pub(crate) dbh: Option<f64>,
+    /// The season of its leaves, -1 to 1: -1 bare, leaves unfold until 0, summer; 0.5 all in the colours of autumn, 1
+    /// bare; not for evergreens [default: the preset's, mostly 0].
+    #[arg(long, value_name = "F", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<TreeSpec>(s, "look.season"))]
     pub(crate) season: Option<f64>,
 }
 
@@ -101,8 +108,8 @@ pub(crate) struct PointsArgs {
     /// Attraction points (.xyz, .txt, .ply, .pcd, .las, .obj) instead of an envelope: space colonization of just these.
     #[arg(long, value_name = "FILE", conflicts_with = "method")]
     pub(crate) attractors: Option<PathBuf>,
-    /// Where the tree stands, in the axes of --up and the --unit, as the points have it, also where these lie far from
-    /// the origin (UTM); may be given several times [default: the preset's, mostly 0,0,0].
+    /// Position of the tree, in the axes of --up and the --unit, in the coordinates of the points even where these lie
+    /// far from the origin (UTM); may be given several times [default: the preset's, mostly 0,0,0].
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
     pub(crate) root: Vec<DVec3>,
     /// Length D of a step, in --unit, above 0 [default: half of --kill].
@@ -157,7 +164,7 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 impl GrowArgs {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         let surface = &mut self.surface;
         let set = (&mut surface.export, &mut surface.skin, &mut self.axes);

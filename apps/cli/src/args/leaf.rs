@@ -9,17 +9,17 @@ use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
 use super::settings::Settings;
-use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, whole};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, parse_field, ranged, whole};
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
 pub(crate) struct LeafArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// Marks or chief veins of a leaf (.csv), its vein graph or its profile (.json), or the numbers of a leaf that was not
-    /// measured (.toml); several for --days and --plant. `-` reads any but the last from standard input.
+    /// Marks or chief veins of a leaf (.csv), its vein graph or its profile (.json), or the numbers of a leaf that was
+    /// not measured (.toml); several for --days and --plant. `-` reads any but the last from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
     #[arg(long, short, value_name = "OUT", help = lists::leaf_output())]
@@ -35,7 +35,7 @@ pub(crate) struct LeafArgs {
     pub(crate) scan: bool,
     /// Length of the midrib in metres, 0.002 to 10, for a vein graph in pixels [default: 0.1, with a warning] and for
     /// --venation [default: 0.1 palmate, 0.3 parallel].
-    #[arg(long, value_name = "METRES", value_parser = |s: &str| of::<LeafSpec>(s, "length_m"))]
+    #[arg(long, value_name = "METRES", value_parser = |s: &str| parse_field::<LeafSpec>(s, "length_m"))]
     pub(crate) length: Option<f64>,
     /// Make a leaf with these veins from a few numbers, without DATA: --veins, --length, --depth.
     #[arg(long, value_enum, conflicts_with_all = ["inputs", "template", "scan", "plant", "days"])]
@@ -43,24 +43,24 @@ pub(crate) struct LeafArgs {
     /// Chief veins of --venation, an odd number: 3 to 11 palmate, 3 to 31 parallel [default: 5, 9].
     #[arg(long, value_name = "N", requires = "venation", value_parser = clap::value_parser!(u32).range(3..=31))]
     pub(crate) veins: Option<u32>,
-    /// How far the notches of a palmate leaf reach, 0 (none) to 0.9.
+    /// Depth of the notches of a palmate leaf, 0 (none) to 0.9.
     #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = |s: &str| ranged(s, 0.0, 0.9))]
     pub(crate) depth: f64,
     /// Side veins on either side of each chief vein in its lobe, made by rule and not measured, 0 to 12 [default: 4
     /// with --venation palmate, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=12))]
     pub(crate) side_veins: Option<u32>,
-    /// Which leaf of a file that holds several (profiles), from 1 [default: the first, with a warning].
+    /// Number, from 1, of the leaf in a file that holds several (profiles) [default: the first, with a warning].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) number: Option<u32>,
-    /// How a vein graph is read.
+    /// Reading of a vein graph.
     #[arg(long, value_enum, value_name = "FORM", default_value_t = GraphWord::Auto)]
     pub(crate) graph: GraphWord,
     /// Also write the leaf as marks, such as those found in a scan or grown between stages.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) marks: Option<PathBuf>,
-    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
-    /// pictures.
+    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours,
+    /// patterns, pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
     #[arg(long, help = lists::wind(""))]
@@ -115,11 +115,11 @@ A profile is {\"x\": [...], \"y\": [...], \"s\": [...], \"r\": [...]}: the midri
 upwards), and the whole width r at the length s from the base; several stand in a list (--number).
 A vein graph is {\"unit\": \"pixel\", \"nodes_xyr\": [[x, y, radius], ...], \"edges\": [[0, 1], ...]}.";
 
-/// How blade and veins are made.
+/// Options for making blade and veins.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Leaf")]
 pub(crate) struct ShapeArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// Surface of the blade.
@@ -128,7 +128,7 @@ pub(crate) struct ShapeArgs {
     /// Rings of the veins: circles across the vein as published, or the exact envelope of its balls.
     #[arg(long, value_enum, default_value_t = RingsWord::Plain)]
     pub(crate) rings: RingsWord,
-    /// What a measured thickness is [default: what the file says, else diameter].
+    /// Meaning of a measured thickness [default: as in the file, else diameter].
     #[arg(long, value_enum)]
     pub(crate) thickness: Option<ThicknessWord>,
     /// Parameters of side veins: those of the blade, on which they then lie, or their own chord lengths as
@@ -136,7 +136,8 @@ pub(crate) struct ShapeArgs {
     #[arg(long, value_enum, default_value_t = ParametersWord::Shared)]
     pub(crate) parameters: ParametersWord,
     /// Pull of the thickest vein on a NURBS blade, 1 (none) to 100.
-    #[arg(long, value_name = "X", default_value_t = 4.0, value_parser = |s: &str| of::<LeafSpec>(s, "vein_weight"))]
+    #[arg(long, value_name = "X", default_value_t = 4.0,
+          value_parser = |s: &str| parse_field::<LeafSpec>(s, "vein_weight"))]
     pub(crate) vein_weight: f64,
     /// Parts of each span between marks, 1 to 64.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = |s: &str| whole::<LeafSpec>(s, "subdivisions"))]
@@ -152,28 +153,28 @@ pub(crate) struct ShapeArgs {
     pub(crate) margin_vein: bool,
 }
 
-/// How the leaf is bent and coloured.
+/// Bend and colour of the leaf.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Look")]
 pub(crate) struct LookArgs {
     /// Roll about the midrib, -1 (below) to 1 (margins meet above); 0 as measured.
     #[arg(long, value_name = "X", default_value_t = 0.0, allow_hyphen_values = true,
-          value_parser = |s: &str| of::<LeafSpec>(s, "curl"))]
+          value_parser = |s: &str| parse_field::<LeafSpec>(s, "curl"))]
     pub(crate) curl: f64,
     /// Loss of stiffness, 0 (as measured) to 1 (hanging limp).
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| of::<LeafSpec>(s, "wilt"))]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| parse_field::<LeafSpec>(s, "wilt"))]
     pub(crate) wilt: f64,
-    /// Move a control ball: that of mark MARK (1 to 7 from the right margin) in row ROW (1 from the tip, 0 the tip itself), or
-    /// of mark MARK on chief vein ROW, by so many metres to the right, towards the tip and off the upper side, and make the
-    /// veins there TIMES as thick; again for more balls.
+    /// Move a control ball: that of mark MARK (1 to 7 from the right margin) in row ROW (1 from the tip, 0 the tip
+    /// itself), or of mark MARK on chief vein ROW, by these metres to the right, towards the tip and off the upper
+    /// side, and multiply the thickness of the veins there by TIMES; repeat the option for more balls.
     #[arg(long, value_name = "ROW,MARK,RIGHT,FORTH,UP[,TIMES]", allow_hyphen_values = true, value_parser = ball)]
     pub(crate) ball: Vec<BallMove>,
-    /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf
-    /// (.png or .jpg), cropped to its box with the tip at the top. With --scan: scan (that of the points, where they have
-    /// any; the default) or plain.
+    /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf (.png or
+    /// .jpg), cropped to its box with the tip at the top. With --scan: scan (that of the points, where they have any;
+    /// the default) or plain.
     #[arg(long, value_name = "veins|plain|scan|FILE", default_value = "veins")]
     pub(crate) texture: PathBuf,
-    /// Days on which the leaf was measured, one a file, in order.
+    /// Days on which the leaf was measured, one for each file, in order.
     #[arg(long, value_name = "D,D,...", value_delimiter = ',', requires = "day")]
     pub(crate) days: Vec<f64>,
     /// The day to show, between the first and the last of --days.
@@ -181,7 +182,7 @@ pub(crate) struct LookArgs {
     pub(crate) day: Option<f64>,
 }
 
-/// A moved control ball, as `--ball` names it.
+/// Parses a moved control ball of `--ball`.
 fn ball(text: &str) -> Result<BallMove, String> {
     let form = || format!("`{text}` is not ROW,MARK,RIGHT,FORTH,UP or ROW,MARK,RIGHT,FORTH,UP,TIMES");
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -266,28 +267,28 @@ pub(crate) enum GraphWord {
 pub(crate) enum RingsWord {
     /// Circles across the vein
     Plain,
-    /// Where each ball touches the surface of all
+    /// Contact of each ball with the surface of all
     Envelope,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum ThicknessWord {
-    /// As callipers measure
+    /// Diameter, as callipers measure it
     Diameter,
-    /// As the formulas take it
+    /// Radius, as the formulas use it
     Radius,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum ParametersWord {
-    /// Those of the blade
+    /// Parameters of the blade
     Shared,
     /// Chord lengths of the vein's own marks
     Own,
 }
 
 impl LeafArgs {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         let Self { export, axes, wind, output, .. } = self;
         Settings { export, axes, wind, output: output.as_deref() }.settle(&self.given)

@@ -10,15 +10,15 @@ use super::shared::{CheckArgs, CommonArgs, PictureArgs, ranged, seed};
 #[derive(Args, Debug)]
 #[command(after_long_help = LIGHT_EXAMPLES)]
 pub(crate) struct LightArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily and others, or your own .toml) in full bloom, a
-    /// drawing, or a project (.burgeon), of which all plants that are not hidden stand in the light together.
+    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily and others, or your own .toml) in full
+    /// bloom, a drawing, or a project (.burgeon), all visible plants of which stand in the light together.
     #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING")]
     pub(crate) what: PathBuf,
-    /// A table with a row for each axis and organ (.csv; docs/light.md has its columns), the structure of the plant with columns of
-    /// light (.mtg, .opf), or the plant in colours of what it absorbs (.glb).
+    /// A table with a row for each axis and organ (.csv; docs/light.md has its columns), the structure of the plant
+    /// with columns of light (.mtg, .opf), or the plant coloured by the light that it absorbs (.glb).
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also make a picture in these colours.
@@ -39,11 +39,11 @@ pub(crate) struct LightArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// Where light comes from. All irradiances are of photosynthetically active radiation (PAR) on a horizontal surface.
+/// Sources of light. All irradiances are of photosynthetically active radiation (PAR) on a horizontal surface.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Light")]
 pub(crate) struct SourceArgs {
-    /// How the light of the sky is distributed [default: overcast; clear with a sun].
+    /// Distribution of the light of the sky [default: overcast; clear with a sun].
     #[arg(long, value_enum, value_name = "SKY")]
     pub(crate) sky: Option<SkyWord>,
     /// PAR from the sky on a horizontal surface, W/m2, 0 to 2000 [default: 100; of a clear day with --place].
@@ -52,11 +52,11 @@ pub(crate) struct SourceArgs {
     /// PAR straight from the sun on a horizontal surface, W/m2, 0 to 2000 [default: of a clear day with --place].
     #[arg(long, value_name = "W", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 2000.0))]
     pub(crate) direct: Option<f64>,
-    /// Where the sun stands: azimuth from north (-Z) over east (+X), and elevation above the horizon, degrees.
+    /// Position of the sun: azimuth from north (-Z) over east (+X), and elevation above the horizon, degrees.
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, value_parser = pair, conflicts_with = "place", requires = "direct")]
     pub(crate) sun: Option<[f64; 2]>,
-    /// A place of the earth, where the sun stands as it does on that day: latitude and longitude in degrees (north and east are
-    /// positive), and metres above the sea [default of these: 0].
+    /// A place on earth, which gives the position of the sun on that day: latitude and longitude in degrees (north and
+    /// east are positive), and metres above the sea [default of these: 0].
     #[arg(long, value_name = "LAT,LON[,M]", allow_hyphen_values = true, value_parser = place, requires = "date")]
     pub(crate) place: Option<[f64; 3]>,
     /// The day, 1950 to 2050.
@@ -65,7 +65,7 @@ pub(crate) struct SourceArgs {
     /// The hour of the day by the clock, 0 to 24 [default: 12].
     #[arg(long, value_name = "H", value_parser = |s: &str| ranged(s, 0.0, 24.0), requires = "place")]
     pub(crate) hour: Option<f64>,
-    /// What the clock is ahead of universal time, hours, -12 to 14 [default: the longitude over 15, rounded].
+    /// Hours by which the clock is ahead of universal time, -12 to 14 [default: the longitude over 15, rounded].
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -12.0, 14.0), requires = "place")]
     pub(crate) zone: Option<f64>,
     /// Linke's turbidity of the air, 1 to 10: 2 is very clear, 3 clear, 5 moist, 7 polluted [default: 3].
@@ -74,30 +74,30 @@ pub(crate) struct SourceArgs {
     /// The sum of a clear day, every half hour from sunrise to sunset, in MJ.
     #[arg(long, requires = "place", conflicts_with_all = ["hour", "direct", "diffuse"])]
     pub(crate) daily: bool,
-    /// A sky as it was measured: a CSV file with rows of azimuth, elevation (degrees) and PAR on a horizontal surface (W/m2)
-    /// from there, 1 to 2000 rows.
+    /// A measured sky: a CSV file with rows of azimuth, elevation (degrees) and PAR on a horizontal surface (W/m2) from
+    /// there, 1 to 2000 rows.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["sky", "diffuse", "direct", "sun", "place"])]
     pub(crate) sky_table: Option<PathBuf>,
 }
 
-/// What light falls on.
+/// The lit stand.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Stand")]
 pub(crate) struct LightStandArgs {
-    /// Repeat the scene without end in cells of this width (along X) and depth (along Z), metres, each 0.001 to 10000: a closed
-    /// canopy. Without, it stands alone.
+    /// Repeat the scene without end in cells of this width (along X) and depth (along Z), metres, each 0.001 to 10000:
+    /// a closed canopy. Without it, the scene stands alone.
     #[arg(long, value_name = "WxD", value_parser = cell)]
     pub(crate) repeat: Option<[f64; 2]>,
     /// Reflectance and transmittance of leaves and petals, together at most 1 [default: 0.1,0.05].
     #[arg(long, value_name = "R,T", value_parser = optics)]
     pub(crate) leaf: Option<[f64; 2]>,
-    /// Reflectance of wood and all else that is opaque, 0 to 1 [default: 0.16].
+    /// Reflectance of wood and all other opaque parts, 0 to 1 [default: 0.16].
     #[arg(long, value_name = "R", value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) wood: Option<f64>,
     /// Reflectance of the soil, 0 to 1 [default: 0.1].
     #[arg(long, value_name = "R", value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) soil: Option<f64>,
-    /// How often light is followed from surface to surface, 0 to 50 [default: 3].
+    /// Number of times that light is followed from surface to surface, 0 to 50 [default: 3].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=50))]
     pub(crate) bounces: Option<u32>,
     /// Lines of light in each direction, 1000 to 4194304 [default: 262144].

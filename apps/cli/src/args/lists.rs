@@ -4,12 +4,12 @@ use burgeon::formats::{DrawingFormat, ModelFormat, RobotFormat, Room, StructureF
 
 use super::plant_format::PlantFormat;
 
-/// How files of the structure of plants may end, for messages.
+/// Returns the endings of files of the structure of plants, for messages.
 pub(crate) fn structure_endings() -> String {
     format!("{} or a table of cylinders (.csv, .txt)", StructureFormat::read_endings())
 }
 
-/// A plant as a model, as its structure or as a robot.
+/// Describes a plant as a model, as its structure or as a robot.
 pub(crate) fn plant_output() -> String {
     let (models, structures) = (ModelFormat::written_endings(), PlantFormat::structure_endings());
     let robots = RobotFormat::written_endings();
@@ -45,7 +45,7 @@ pub(crate) fn wind(of: &str) -> String {
     )
 }
 
-/// A model, or the structure of a plant.
+/// Describes a model, or the structure of a plant.
 pub(crate) fn render_input() -> String {
     format!(
         "The model ({}), or the structure of a plant ({}).",
@@ -70,7 +70,7 @@ pub(crate) fn obstacle() -> String {
     )
 }
 
-/// `subject`: what bears the leaf and what it bears without.
+/// `subject`: the plant that bears the leaf, and what it bears without one.
 pub(crate) fn leaf_template(subject: &str) -> String {
     let models = ModelFormat::read_endings();
     format!(

@@ -2,7 +2,6 @@
 
 mod bloom;
 mod compare;
-mod engine;
 mod export;
 mod files;
 mod forest;
@@ -48,9 +47,9 @@ use clap::{Args, Parser, Subcommand};
 
 /// Turns drawings into three-dimensional plants.
 ///
-/// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
-/// 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (drawings of a batch that were finished by then
-/// stay). The files of a command are written all or none, and never over a file that it reads; other files of
+/// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr gives the fault, its place and the
+/// remedy), 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (drawings of a batch that were finished
+/// by then stay). The files of a command are written all or none, and never over a file that it reads; other files of
 /// the same name are replaced, links are followed (docs/exports.md). An input named - is standard input.
 #[derive(Debug, Parser)]
 #[command(
@@ -85,47 +84,48 @@ pub(crate) enum Command {
     Grow(Box<GrowArgs>),
     /// Find a tree in a laser scan: wood as axes with radii, leaves by species
     ///
-    /// Ground, noise and other things go; ways from the foot make the skeleton, circles and the pipe model its radii. The
-    /// result is a plant as all others are: meshes, structure, cylinders, measures.
+    /// Removes ground, noise and other things; paths from the foot give the skeleton, circles and the pipe model its
+    /// radii. The result is a plant like all others: meshes, structure, cylinders, measures.
     Scan(Box<ScanArgs>),
     /// Turn an inventory of trees into a forest: 3D Tiles of grown plants, one file with instances, USD, a table
     ///
-    /// Each tree stands in its place with its height, crown and diameter. A few plants of each species and age are grown and
-    /// stand for many trees, turned and scaled as far as looks right; coarser levels and pictures stand for them far away.
+    /// Each tree stands in its place with its height, crown and diameter. A few plants of each species and age are
+    /// grown and stand for many trees, turned and scaled as far as looks right; coarser levels and pictures stand for
+    /// distant ones.
     Forest(Box<ForestArgs>),
-    /// Compute the light on a plant: what each leaf and branch absorbs of sky and sun
+    /// Compute the light on a plant: the light of sky and sun that each leaf and branch absorbs
     ///
-    /// Photosynthetically active light (PAR) from a sky of 46 directions and the sun of a place and day, with what leaves and soil
-    /// throw back and let through; of one plant, of several, or of a canopy without end.
+    /// Photosynthetically active light (PAR) from a sky of 46 directions and the sun of a place and day, with the light
+    /// that leaves and soil reflect and transmit; on one plant, on several, or on a canopy without end.
     Light(Box<LightArgs>),
     /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
     ///
-    /// Works on a species, a spec, a drawing, a project or the structure of a plant that was measured (MTG, OPF, QSM, SWC), which
-    /// may also get leaves. The edits stand in a JSON file; the rest of the plant stays
-    /// as it is.
+    /// Works on a species, a spec, a drawing, a project or the structure of a plant that was measured (MTG, OPF, QSM,
+    /// SWC), which may also get leaves. A JSON file holds the edits; the rest of the plant stays unchanged.
     Shape(Box<ShapeArgs>),
     /// Replay gestures recorded in a headset: a record that the Studio wrote
     ///
-    /// The same tools, without a headset: the document in which the record ends, a picture of it, or an animated picture
-    /// of every step.
+    /// The same tools, without a headset: the document in which the record ends, a picture of it, or an animated
+    /// picture of every step.
     Replay(Box<ReplayArgs>),
     /// List the species that `burgeon grow` knows; show one as TOML; write the JSON Schema of specs
     Presets(PresetsArgs),
     /// Grow the same oak by three methods and compare them
     ///
-    /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds,
-    /// bytes, and what Yang et al. (2019) printed.
+    /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds, bytes,
+    /// and the figures of Yang et al. (2019).
     Compare(Box<CompareArgs>),
     /// Make a picture of a model or of a plant
     ///
-    /// The model, or the plant of an MTG, OPF, QSM or SWC file, fills the picture but for a margin and stands on the ground in the light of a soft sun.
+    /// The model, or the plant of an MTG, OPF, QSM or SWC file, fills the picture except for a margin and stands on the
+    /// ground in the light of a soft sun.
     Render(RenderArgs),
     /// Convert a model or a drawing to another format
     #[command(long_about = lists::convert())]
     Convert(ConvertArgs),
     /// Describe a model, a drawing, a project or the structure of a plant
     ///
-    /// Counts, bounds, units, parts and materials, measures of plants, and what is wrong with it.
+    /// Counts, bounds, units, parts and materials, measures of plants, and faults.
     Info(InfoArgs),
     /// Grow organs through scans of several days; flowers that open
     #[command(subcommand)]
@@ -148,8 +148,8 @@ pub(crate) enum Command {
     Completions(CompletionsArgs),
     /// Write the manual pages, one for each command
     ///
-    /// With `man -l FOLDER/burgeon-sketch.1` they are read where they lie; with a folder share/man/man1, by
-    /// `man burgeon-sketch`.
+    /// `man -l FOLDER/burgeon-sketch.1` reads a page in place; if FOLDER is a share/man/man1, so does `man
+    /// burgeon-sketch`.
     Man(ManArgs),
 }
 

@@ -1,4 +1,4 @@
-//! Formats that plants are written as, and their words.
+//! Formats in which plants are written, and their words.
 
 use std::sync::LazyLock;
 
@@ -50,7 +50,7 @@ fn possible(row: &'static FormatRow) -> PossibleValue {
     PossibleValue::new(row.endings[0]).help(row.about)
 }
 
-/// What a plant is written as.
+/// Written form of a plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PlantFormat {
     /// Its meshes.
@@ -70,17 +70,17 @@ impl PlantFormat {
         }
     }
 
-    /// Whether its files have room for something.
+    /// Whether its files have room for the given data.
     pub(crate) fn holds(self, room: Room) -> bool {
         self.row().holds.contains(&room)
     }
 
-    /// How names of its files end, without the dot.
+    /// Returns the ending of its files, without the dot.
     pub(crate) const fn extension(self) -> &'static str {
         self.row().endings[0]
     }
 
-    /// The format of models that it is.
+    /// Returns its format of models, if it is one.
     pub(crate) const fn model(self) -> Option<ModelFormat> {
         match self {
             Self::Model(model) => Some(model),
@@ -95,14 +95,25 @@ impl PlantFormat {
             .or_else(|| RobotFormat::from_extension(extension).map(Self::Robot))
     }
 
-    /// The formats of models that are written.
+    /// Returns the formats in which models are written.
     fn models() -> impl Iterator<Item = ModelFormat> {
         ModelFormat::ALL.into_iter().filter(|f| f.row().is_written())
     }
 
-    /// All that plants are written as, by the last ending of a file's name: that of tables may hold anything.
+    /// Returns all formats in which plants are written, by the last ending of a file's name: a table may hold anything,
+    /// and USD with physics is USD.
     fn written() -> impl Iterator<Item = Self> {
-        Self::models().map(Self::Model).chain(Self::structures()).chain(RobotFormat::ALL.map(Self::Robot))
+        let robots = RobotFormat::ALL.into_iter().filter(|f| !f.extension().contains('.')).map(Self::Robot);
+        Self::models().map(Self::Model).chain(Self::structures()).chain(robots)
+    }
+
+    /// Returns the format that the last two words of a file's name say, if any.
+    pub(crate) fn from_two_words(name: &str) -> Option<Self> {
+        let formats = StructureFormat::ALL.into_iter().map(Self::Structure);
+        let mut two = formats
+            .chain(RobotFormat::ALL.into_iter().map(Self::Robot))
+            .filter(|format| format.extension().contains('.'));
+        two.find(|format| name.to_ascii_lowercase().ends_with(&format!(".{}", format.extension())))
     }
 
     fn structures() -> impl Iterator<Item = Self> {
@@ -110,12 +121,12 @@ impl PlantFormat {
         StructureFormat::ALL.into_iter().filter(named).map(Self::Structure)
     }
 
-    /// How files of structure may end, for help texts.
+    /// Returns the endings of files of structure, for help texts.
     pub(crate) fn structure_endings() -> String {
         list_of_endings(Self::structures().map(|f| &f.row().endings[0]))
     }
 
-    /// How files of plants may end, for messages.
+    /// Returns the endings of files of plants, for messages.
     pub(crate) fn endings() -> String {
         format!("plants are written as {}", list_of_endings(Self::written().map(|f| &f.row().endings[0])))
     }

@@ -13,7 +13,7 @@ use super::shared::{CommonArgs, PictureArgs};
   burgeon replay garden.gestures.json --save garden.burgeon --png garden.png
   burgeon replay garden.gestures.json --film garden.gif --size 360x360")]
 pub(crate) struct ReplayArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// A record that the Studio wrote in a headset (burgeon.gestures/1).
@@ -25,7 +25,7 @@ pub(crate) struct ReplayArgs {
     /// Make a picture of the plant that was worked on last.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Make an animated picture of it all, as fast as it was done but for long waits; without --size 360x360.
+    /// Make an animated picture of the whole record, at its own pace except for long waits; without --size 360x360.
     #[arg(long, value_name = "FILE.gif")]
     pub(crate) film: Option<PathBuf>,
     #[command(flatten)]

@@ -19,10 +19,10 @@ use crate::failure::Outcome;
   burgeon scan tree.xyz --unit mm --leaves oak -o oak.glb --png oak.png
   burgeon scan tree.ply --up y -o tree.glb")]
 pub(crate) struct ScanArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// The scan: .laz, .las, .ply, .xyz, .txt, .pcd or .obj, with +Z up unless --up says otherwise.
+    /// The scan: .laz, .las, .e57, .ply, .xyz, .txt, .pcd or .obj, with +Z up unless --up says otherwise.
     #[arg(value_name = "SCAN")]
     pub(crate) input: PathBuf,
     #[arg(long, short, value_name = "OUT", help = lists::plant_output(), required_unless_present_any = ["png", "qsm", "mtg", "report", "json"])]
@@ -39,15 +39,15 @@ pub(crate) struct ScanArgs {
     /// Leaves and bark of a species of `burgeon presets`, or of a spec (.toml) [default: a bare tree].
     #[arg(long, value_name = "PRESET|SPEC.toml")]
     pub(crate) leaves: Option<PathBuf>,
-    /// Where the stem stands on the ground, in the coordinates and the unit of the scan: the two that are not up, in their
-    /// order [default: the largest thing that stands on the ground].
+    /// Position of the stem on the ground, in the coordinates and the unit of the scan: the two that are not up, in
+    /// their order [default: the largest thing that stands on the ground].
     #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = place)]
     pub(crate) at: Option<[f64; 2]>,
     /// Make a tree of each stem: -o names a folder, which gets a model and a table of cylinders of each, an inventory
-    /// (inventory.csv) and a map (map.png). Trees that are there already are kept, if their points and options are the same.
+    /// (inventory.csv) and a map (map.png). Existing trees are kept, if their points and options are the same.
     #[arg(long, conflicts_with_all = ["at", "png", "qsm", "mtg"], requires = "output")]
     pub(crate) all: bool,
-    /// Edge of the cubes that the cloud is seen in, metres, 0.001 to 1 [default: by the spacing of the points].
+    /// Edge of the cubes into which the cloud is divided, metres, 0.001 to 1 [default: by the spacing of the points].
     #[arg(long, value_name = "M", value_parser = |s: &str| ranged(s, 0.001, 1.0))]
     pub(crate) cell: Option<f64>,
     /// Widest gap that is bridged, metres, 0 to 5 [default: 4 % of the height, at most 0.6].
@@ -77,7 +77,7 @@ fn place(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl ScanArgs {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         let surface = &mut self.surface;
         let set = (&mut surface.export, &mut surface.skin, &mut self.axes);

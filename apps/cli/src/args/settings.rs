@@ -1,87 +1,72 @@
-//! What `--for ENGINE` sets of the options of a command.
+//! Effects of `--for ENGINE` on the options of a command.
 
 use std::path::Path;
 
-use clap::ValueEnum;
+use burgeon::ExportChoice;
 
-use super::engine::Air;
 use super::export::ExportArgs;
 use super::given::Given;
-use super::shared::{AxesArgs, SkinArgs};
+use super::plant_format::PlantFormat;
+use super::shared::{AxesArgs, PackWord, SkinArgs};
 use crate::failure::{Failure, Outcome};
 
 /// The options of a command that an engine sets.
 pub(crate) struct Settings<'a> {
     pub(crate) export: &'a mut ExportArgs,
     pub(crate) axes: &'a mut AxesArgs,
-    /// Whether there are columns of the wind.
+    /// Whether there are wind columns.
     pub(crate) wind: &'a mut bool,
     /// The file that is written.
     pub(crate) output: Option<&'a Path>,
 }
 
 impl Settings<'_> {
-    /// Sets what the engine wants and the command line leaves open.
+    /// Sets the options that the engine requires and the command line leaves open.
     pub(crate) fn settle(self, given: &Given) -> Outcome {
         let Some(engine) = self.export.engine else { return Ok(()) };
-        let row = engine.row();
-        let ending =
-            self.output.and_then(Path::extension).and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        let ending = self.output.and_then(ending);
         let Some(ending) = ending else {
             return Err(Failure::Bad(format!(
                 "--for {} is for a model: name its file with -o, ending with .{}",
                 engine.word(),
-                row.endings.join(" or .")
+                engine.endings().join(" or .")
             )));
         };
-        if !row.endings.contains(&ending.as_str()) {
-            return Err(Failure::Bad(format!(
-                "--for {}: this program is given .{}, not .{ending}; end the name with that, or leave --for out",
-                engine.word(),
-                row.endings.join(" or ."),
-            )));
-        }
-        let mut set = Vec::new();
-        if let Some((up, unit)) = row.axes {
-            if !given.has("up") {
-                self.axes.up = Some(up);
-                set.push(format!("--up {}", up.word()));
-            }
-            if !given.has("unit") {
-                self.axes.unit = unit;
-                set.push(format!("--unit {}", unit.word()));
-            }
-        }
-        if row.lods > 0 && !given.has("lods") {
-            self.export.lods = row.lods;
-            set.push(format!("--lods {}", row.lods));
-        }
-        if let Some(pack) = row.pack.filter(|_| !given.has("pack") && !self.export.sway) {
-            self.export.pack = Some(pack);
-            let word = pack.to_possible_value();
-            set.push(format!("--pack {}", word.as_ref().map_or("", |w| w.get_name())));
-        }
-        // Each of these is a way of its own to draw a plant, which wind does not go with.
-        let open =
-            !*self.wind && !self.export.sway && !self.export.instances && self.export.impostor.is_none();
-        match row.wind {
-            Air::Attributes if open => {
-                *self.wind = true;
-                set.push("--wind".to_owned());
-            }
-            Air::Joints if open && self.export.pack.is_none() && !self.export.in_one_file() => {
-                self.export.sway = true;
-                set.push("--sway".to_owned());
-            }
-            _ => {}
-        }
-        if row.names {
-            self.export.names = true;
-            set.push("names of materials and parts after the plant".to_owned());
-        }
-        self.export.set = set;
+        let (export, axes) = (&mut *self.export, &mut *self.axes);
+        let mut choice = ExportChoice {
+            up: axes.up.filter(|_| given.has("up")),
+            unit: Some(axes.unit).filter(|_| given.has("unit")),
+            lods: Some(export.lods).filter(|_| given.has("lods")),
+            packing: export.pack.map(PackWord::packing),
+            has_wind: *self.wind,
+            sways: export.sway,
+            is_one_file: export.in_one_file(),
+            is_still: export.instances || export.impostor.is_some(),
+            has_names: export.names,
+        };
+        let set = engine.settle(&ending, &mut choice);
+        let set = set.map_err(|e| {
+            Failure::Bad(format!("--for {}: {e}; end the name with that, or leave --for out", engine.word()))
+        })?;
+        let written =
+            |s: &burgeon::EngineSetting| if s.is_option() { format!("--{s}") } else { s.to_string() };
+        export.set = set.iter().map(written).collect();
+        export.assembly = engine.has_assembly(&ending);
+        export.nodes = !export.assembly && engine.has_nodes(&choice);
+        axes.up = choice.up.or(axes.up);
+        axes.unit = choice.unit.unwrap_or(axes.unit);
+        export.lods = choice.lods.unwrap_or(export.lods);
+        export.pack = choice.packing.map(PackWord::from_packing);
+        (*self.wind, export.sway, export.names) = (choice.has_wind, choice.sways, choice.has_names);
         Ok(())
     }
+}
+
+/// Returns the ending of a file's name, of two words where a format has them.
+fn ending(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?;
+    let two = PlantFormat::from_two_words(name).map(|format| format.extension().to_owned());
+    two.or_else(|| Some(path.extension()?.to_str()?.to_ascii_lowercase()))
 }
 
 /// Settles the options of a command with a plain surface.

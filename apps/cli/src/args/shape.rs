@@ -15,24 +15,24 @@ use crate::failure::Outcome;
 #[derive(Args, Debug)]
 #[command(after_long_help = SHAPE_EXAMPLES)]
 pub(crate) struct ShapeArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily and others, or your own .toml) in
-    /// full bloom, a drawing, a project (.burgeon), or the structure of a plant that was measured (.mtg, .opf, .swc, a table of
-    /// cylinders as .csv or .txt), which needs no edits.
+    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily and others, or your own .toml) in full
+    /// bloom, a drawing, a project (.burgeon), or the structure of a plant that was measured (.mtg, .opf, .swc, a table
+    /// of cylinders as .csv or .txt), which needs no edits.
     #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING|STRUCTURE", required_unless_present_any = ["template", "schema"])]
     pub(crate) what: Option<PathBuf>,
     /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
     #[arg(long, value_name = "EDITS.json")]
     pub(crate) edits: Option<PathBuf>,
-    /// Leaves and bark of a species of `burgeon presets`, or of a spec (.toml), for a plant of a file of structure [default:
-    /// the leaves of the file].
+    /// Leaves and bark of a species of `burgeon presets`, or of a spec (.toml), for a plant of a file of structure
+    /// [default: the leaves of the file].
     #[arg(long, value_name = "PRESET|SPEC.toml")]
     pub(crate) leaves: Option<PathBuf>,
     #[arg(long, short, value_name = "OUT", help = lists::plant_output(), required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
     pub(crate) output: Option<PathBuf>,
-    /// Which plant of a project, or of a file of structure, that holds several: its name, or its number from 1.
+    /// Name, or number from 1, of the plant in a project, or in a file of structure, that holds several.
     #[arg(long, value_name = "NAME|N")]
     pub(crate) plant: Option<String>,
     /// Also save a project: the drawing with the edits, or the project with the edits after those that it has.
@@ -82,7 +82,7 @@ A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the 
 by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";
 
 impl ShapeArgs {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         let surface = &mut self.surface;
         let set = (&mut surface.export, &mut surface.skin, &mut self.axes);

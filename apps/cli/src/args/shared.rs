@@ -6,7 +6,7 @@ use burgeon::formats::Packing;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::skin::SkinSpec;
 use burgeon::spec::Spec;
-use burgeon::{Seed, Unit, UpAxis};
+use burgeon::{Engine, Seed, Unit, UpAxis};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
@@ -19,19 +19,20 @@ pub(crate) struct CommonArgs {
     /// Number of threads, 1 to 256 [default: all of the machine]. The result does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
-    /// How many times the usual limits of docs/limits.md may be exceeded, 1 to 1000: memory, points, joints, leaves,
+    /// Factor by which the limits of docs/limits.md may be exceeded, 1 to 1000: memory, points, joints, leaves,
     /// triangles and the like. Anything larger is refused.
     #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
           value_parser = |s: &str| ranged(s, 1.0, 1000.0))]
     pub(crate) budget: f64,
-    /// Follow paths in files to wherever they lead: a model's textures, a spec's meshes, the scans of stages. Without, what a
-    /// file names has to lie in its folder or below it, also by links (docs/limits.md). Pipes and devices are never read.
+    /// Follow paths in files wherever they lead: a model's textures, a spec's meshes, the scans of stages. Without it,
+    /// a file may name only files in its folder or below it, also by links (docs/limits.md). Pipes and devices are
+    /// never read.
     #[arg(long)]
     pub(crate) trust_paths: bool,
     /// Print nothing but errors; show no progress.
     #[arg(long, short)]
     pub(crate) quiet: bool,
-    /// Write the report to a JSON file: what was read, understood, counted and timed.
+    /// Write the report to a JSON file: inputs, interpretation, counts and times.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) report: Option<PathBuf>,
     /// Print the report as JSON on stdout instead of the summary.
@@ -40,42 +41,43 @@ pub(crate) struct CommonArgs {
 }
 
 impl CommonArgs {
-    /// Somebody reads the report.
+    /// Whether anybody reads the report.
     pub(crate) fn reports(&self) -> bool {
         self.report.is_some() || self.json
     }
 }
 
-/// What becomes of results that are not plausible.
+/// Treatment of implausible results.
 #[derive(Args, Clone, Copy, Debug, Default)]
 #[command(next_help_heading = "Running")]
 pub(crate) struct CheckArgs {
-    /// Fail, with exit status 2 and no file, if any check of the result fails (docs/limits.md lists them). Without, only on
-    /// results that nobody would accept; other failed checks are warnings.
+    /// Fail, with exit status 2 and no file, if any check of the result fails (docs/limits.md lists them). Without it,
+    /// fail only on results that nobody would accept; other failed checks are warnings.
     #[arg(long)]
     pub(crate) strict: bool,
 }
 
-/// How plants are meshed.
+/// Options for meshing plants.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct SkinArgs {
     /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion. At 1 a crown's leaf has 6 to 24
     /// [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SkinSpec>(s, "detail"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SkinSpec>(s, "detail"))]
     pub(crate) detail: Option<f64>,
     /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
     #[arg(long, value_name = "N", value_parser = |s: &str| whole::<SkinSpec>(s, "sides"))]
     pub(crate) sides: Option<u32>,
-    /// Pixels of a side of the textures of bark, and of the length of those of leaves: 64 to 4096, or off [default: 512]
-    /// (docs/materials.md).
+    /// Pixels of a side of the textures of bark, and of the length of those of leaves: 64 to 4096, or off [default:
+    /// 512] (docs/materials.md).
     #[arg(long, value_name = "SIZE|off", value_parser = texture_size, conflicts_with = "no_textures")]
     pub(crate) textures: Option<u32>,
     /// Plain colours instead of textures, as --textures off.
     #[arg(long)]
     pub(crate) no_textures: bool,
-    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
-    /// pictures.
+    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours,
+    /// patterns, pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
     #[arg(long, help = lists::wind(""))]
@@ -83,7 +85,7 @@ pub(crate) struct SkinArgs {
 }
 
 impl SkinArgs {
-    /// What was asked for, instead of what was there.
+    /// Replaces existing settings by those that were given.
     pub(crate) fn set(&self, skin: &mut SkinSpec) {
         skin.detail = self.detail.unwrap_or(skin.detail);
         skin.sides = self.sides.unwrap_or(skin.sides);
@@ -97,7 +99,7 @@ impl SkinArgs {
         !self.no_textures && self.textures != Some(0)
     }
 
-    /// A plain surface with what was asked for.
+    /// Returns a plain surface with the given settings.
     pub(crate) fn spec(&self) -> SkinSpec {
         let mut skin = SkinSpec::default();
         self.set(&mut skin);
@@ -105,14 +107,14 @@ impl SkinArgs {
     }
 }
 
-/// How pictures are taken.
+/// Options of pictures.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Picture")]
 pub(crate) struct PictureArgs {
     /// Size of the picture in pixels, each 1 to 8192.
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
     pub(crate) size: (u32, u32),
-    /// Viewpoint: front is orthographic and shows what was drawn; turntable is a sheet of views all around.
+    /// Viewpoint: front is orthographic and shows the drawing; turntable is a sheet of views all around.
     #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
     pub(crate) view: ViewWord,
     /// Views of a turntable, 1 to 64.
@@ -168,29 +170,39 @@ pub(crate) enum ViewWord {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
-    /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and coordinates given as options; glTF
-    /// is always +Y [default: y; z for MTG, OPF, QSM and SWC].
+    /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and coordinates given as
+    /// options; glTF is always +Y [default: y; z for MTG, OPF, QSM and SWC].
     #[arg(long, value_parser = up_words())]
     pub(crate) up: Option<UpAxis>,
-    /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and lengths said to be in --unit; glTF is always
-    /// in metres.
+    /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and lengths said to be in --unit;
+    /// glTF is always in metres.
     #[arg(long, value_parser = unit_words(), default_value = Unit::Metre.word())]
     pub(crate) unit: Unit,
 }
 
-/// The words of axes that point up.
+/// Returns the words of axes that point up.
 pub(crate) fn up_words() -> impl TypedValueParser<Value = UpAxis> {
     let words = [(UpAxis::Y, "+Y"), (UpAxis::Z, "+Z")];
     let words = words.map(|(up, help)| PossibleValue::new(up.word()).help(help));
     PossibleValuesParser::new(words).try_map(|word| UpAxis::from_word(&word).ok_or("no axis"))
 }
 
-/// The words of units of length.
+/// Returns the words of units of length.
 pub(crate) fn unit_words() -> impl TypedValueParser<Value = Unit> {
-    let words =
-        [(Unit::Metre, "Metres"), (Unit::Centimetre, "Centimetres"), (Unit::Millimetre, "Millimetres")];
+    let words = [
+        (Unit::Metre, "Metres"),
+        (Unit::Centimetre, "Centimetres"),
+        (Unit::Millimetre, "Millimetres"),
+        (Unit::Foot, "International feet"),
+    ];
     let words = words.map(|(unit, help)| PossibleValue::new(unit.word()).help(help));
     PossibleValuesParser::new(words).try_map(|word| Unit::from_word(&word).ok_or("no unit"))
+}
+
+/// The words of programs that plants go to.
+pub(crate) fn engine_words() -> impl TypedValueParser<Value = Engine> {
+    let words = Engine::ALL.map(|engine| PossibleValue::new(engine.word()).help(engine.about()));
+    PossibleValuesParser::new(words).try_map(|word| Engine::from_word(&word).ok_or("no program"))
 }
 
 /// How a GLB is packed.
@@ -198,12 +210,19 @@ pub(crate) fn unit_words() -> impl TypedValueParser<Value = Unit> {
 pub(crate) enum PackWord {
     /// Numbers in few bits (`KHR_mesh_quantization`): most programs read it, Blender among them
     Quantized,
-    /// The same, compressed (`EXT_meshopt_compression`, `EXT_texture_webp`): for three.js, Babylon, Godot and others that have
-    /// the decoder
+    /// The same, compressed (`EXT_meshopt_compression`, `EXT_texture_webp`): for three.js, Babylon, Godot and others
+    /// that have the decoder
     Meshopt,
 }
 
 impl PackWord {
+    pub(crate) const fn from_packing(packing: Packing) -> Self {
+        match packing {
+            Packing::Quantized => Self::Quantized,
+            Packing::Compressed => Self::Meshopt,
+        }
+    }
+
     pub(crate) const fn packing(self) -> Packing {
         match self {
             Self::Quantized => Packing::Quantized,
@@ -212,7 +231,7 @@ impl PackWord {
     }
 }
 
-/// A size of textures; 0 for off.
+/// Parses a size of textures; 0 for off.
 fn texture_size(text: &str) -> Result<u32, String> {
     match text.parse() {
         _ if text == "off" => Ok(0),
@@ -254,13 +273,13 @@ pub(crate) fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
         .ok_or_else(|| format!("give a number from {low} to {high}"))
 }
 
-/// A number within the range that its spec gives a field.
-pub(crate) fn of<T: Spec>(text: &str, field: &str) -> Result<f64, String> {
+/// Parses a number within the range that its spec gives a field.
+pub(crate) fn parse_field<T: Spec>(text: &str, field: &str) -> Result<f64, String> {
     let [low, high] = range::<T>(field);
     ranged(text, low, high)
 }
 
-/// As [`of`], a whole number.
+/// Parses a whole number as [`parse_field`] does.
 pub(crate) fn whole<T: Spec>(text: &str, field: &str) -> Result<u32, String> {
     let [low, high] = range::<T>(field);
     text.parse()

@@ -12,13 +12,13 @@ use super::given::Given;
 use super::lists;
 use super::plant_format::PlantFormatWord;
 use super::settings;
-use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, SkinArgs, of, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, SkinArgs, parse_field, seed};
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
 pub(crate) struct SketchArgs {
-    /// First: clap takes the values of the others away as it reads them.
+    /// Must be the first field: clap removes the values of the other fields as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
     /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json; projects: .burgeon, with their settings;
@@ -30,7 +30,7 @@ pub(crate) struct SketchArgs {
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = PlantFormatWord::GLB)]
     pub(crate) format: PlantFormatWord,
-    /// Also write the branches as cylinders, one a row, as `TreeQSM` has them. For several drawings a folder.
+    /// Also write the branches as cylinders, one in each row, in the form of `TreeQSM`. For several drawings a folder.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) qsm: Option<PathBuf>,
     /// Also write a project in which every plant of the drawing is a plant of its own, where it was drawn.
@@ -71,18 +71,19 @@ Class files (--classes) set strokes by their index from 0:
   JSON   a report of this command (--report) in which classes were corrected
 Classes: blade, corolla, axis, trunk_outline, crown, vein, disc, pot, ground, fruit, scribble, other";
 
-/// How the drawing is understood and given depth.
+/// Settings for reading the drawing and giving it depth.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Plant")]
 pub(crate) struct ReadingArgs {
     /// Height of the plant in metres, 0.001 to 1000 [default: 8 for a tree, 0.5 for a herb].
-    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "height_m"))]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SketchSpec>(s, "height_m"))]
     pub(crate) height: Option<f64>,
-    /// How branches leave the drawing's plane: riesz spreads siblings evenly, paper is the published entropy
+    /// Departure of branches from the drawing's plane: riesz spreads siblings evenly, paper is the published entropy
     /// [default: riesz].
     #[arg(long, value_enum, value_name = "MODE", hide_default_value = true)]
     pub(crate) branch_depth: Option<BranchDepthWord>,
-    /// How leaves leave the drawing's plane: drawn keeps the front view, paper turns all leaves to one side as
+    /// Departure of leaves from the drawing's plane: drawn keeps the front view, paper turns all leaves to one side as
     /// published, signed keeps left and right [default: drawn].
     #[arg(long, value_enum, value_name = "MODE")]
     pub(crate) leaf_depth: Option<LeafDepthWord>,
@@ -90,37 +91,42 @@ pub(crate) struct ReadingArgs {
     /// leaf, fruit, `house_plant` or vegetable [default: the best explanation; the report lists up to three].
     #[arg(long = "as", value_name = "KIND", value_parser = kind)]
     pub(crate) read_as: Option<Kind>,
-    /// Set what strokes are: a CSV or JSON file, see the end of this help.
+    /// Set the classes of strokes: a CSV or JSON file, see the end of this help.
     #[arg(long, value_name = "FILE")]
     pub(crate) classes: Option<PathBuf>,
     /// Flowers that face away from the viewer, by number from 0, separated by commas [default: none].
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub(crate) flip_flowers: Vec<u32>,
-    /// How many twigs and leaves fill contours and crowns, relative to the usual, 0.1 to 10 [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "fill.density"))]
+    /// Number of twigs and leaves that fill contours and crowns, relative to the usual, 0.1 to 10 [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SketchSpec>(s, "fill.density"))]
     pub(crate) density: Option<f64>,
     /// Direction of grown twigs, -1 (weeping) to 1 (upright) [default: 0.1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "fill.tropism"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SketchSpec>(s, "fill.tropism"))]
     pub(crate) tropism: Option<f64>,
     /// Exponent of the pipe model, 1.8 to 3: a higher exponent makes branches below forks thinner
     /// [default: 2 for a tree, 2.5 for a herb].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "pipe_exponent"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SketchSpec>(s, "pipe_exponent"))]
     pub(crate) pipe_exponent: Option<f64>,
     /// Pull of light on drawn branches, -1 to 1, upwards [default: 0].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "phototropism"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SketchSpec>(s, "phototropism"))]
     pub(crate) phototropism: Option<f64>,
     /// Sag of drawn branches, 0 to 1 [default: 0].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "gravity"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SketchSpec>(s, "gravity"))]
     pub(crate) gravity: Option<f64>,
     #[arg(long, value_name = "FILE",
           help = lists::leaf_template("the plant bears instead of the drawn or built-in ones"))]
     pub(crate) leaf_template: Option<PathBuf>,
-    /// All settings of the sketch maker as TOML or JSON (what is missing keeps its default); options above win over it.
+    /// All settings of the sketch maker as TOML or JSON (missing ones keep their defaults); options above override it.
     #[arg(long, value_name = "FILE")]
     pub(crate) spec: Option<PathBuf>,
 }
 
-/// A kind of plant by its word.
+/// Parses a kind of plant by its word.
 fn kind(word: &str) -> Result<Kind, String> {
     let known = || Kind::ALL.into_iter().filter(|k| *k != Kind::None);
     known().find(|k| k.word() == word).ok_or_else(|| {
@@ -129,7 +135,7 @@ fn kind(word: &str) -> Result<Kind, String> {
     })
 }
 
-/// How the plant is meshed and coloured.
+/// Options for meshing and colouring the plant.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct SurfaceArgs {
@@ -141,7 +147,8 @@ pub(crate) struct SurfaceArgs {
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
     /// Variation of colour from organ to organ, 0 (none) to 1 [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SkinSpec>(s, "variation"))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true,
+          value_parser = |s: &str| parse_field::<SkinSpec>(s, "variation"))]
     pub(crate) variation: Option<f64>,
 }
 
@@ -215,7 +222,7 @@ impl From<PetalWord> for PetalColor {
 }
 
 impl SketchArgs {
-    /// Sets what the engine of `--for` wants.
+    /// Sets the options that the engine of `--for` requires.
     pub(crate) fn settle(&mut self) -> Outcome {
         let surface = &mut self.surface;
         let set = (&mut surface.export, &mut surface.skin, &mut self.axes);

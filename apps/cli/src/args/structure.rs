@@ -1,4 +1,4 @@
-//! How files with the structure of plants are read: MTG, OPF, QSM and SWC.
+//! Options for reading files with the structure of plants: MTG, OPF, QSM and SWC.
 
 use burgeon::formats::StructureSpec;
 use burgeon::{Unit, UpAxis};
@@ -10,25 +10,25 @@ use super::lists::structure_endings;
 use super::shared::{AxesArgs, up_words};
 use crate::failure::Outcome;
 
-/// What the file does not say itself.
+/// Properties that a file itself does not give.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Input")]
 pub(crate) struct StructureArgs {
-    /// Axis that points up in the input, where it differs from --up; MTG, OPF, QSM and SWC files may say it, and have z
-    /// otherwise.
+    /// Axis that points up in the input, where it differs from --up; MTG, OPF, QSM and SWC files may give it, and
+    /// default to z.
     #[arg(long, value_parser = up_words(), value_name = "UP")]
     pub(crate) in_up: Option<UpAxis>,
-    /// Unit of length in the input, where it differs from --unit; MTG, OPF, QSM and SWC files may say it, and have metres
-    /// otherwise. 0.1mm and um are for these.
+    /// Unit of length in the input, where it differs from --unit; MTG, OPF, QSM and SWC files may give it, and default
+    /// to metres. 0.1mm and um are for these.
     #[arg(long, value_parser = length_words(), value_name = "UNIT")]
     pub(crate) in_unit: Option<LengthUnit>,
-    /// Unit of radii and diameters in an MTG, OPF, QSM or SWC file, where it is another than that of lengths: digitised trees
-    /// often have places in cm and diameters in mm.
+    /// Unit of radii and diameters in an MTG, OPF, QSM or SWC file, where it differs from that of lengths: digitised
+    /// trees often have places in cm and diameters in mm.
     #[arg(long, value_parser = length_words(), value_name = "UNIT")]
     pub(crate) thickness_unit: Option<LengthUnit>,
 }
 
-/// The options of [`StructureArgs`], by the names of their fields.
+/// Options of [`StructureArgs`], by the names of their fields.
 const OPTIONS: [&str; 3] = ["in_up", "in_unit", "thickness_unit"];
 
 impl StructureArgs {
@@ -40,7 +40,7 @@ impl StructureArgs {
         }
     }
 
-    /// The same where `--up` and `--unit` are those of the input, too.
+    /// Returns the spec where `--up` and `--unit` also apply to the input.
     pub(crate) fn spec_of_input(&self, axes: &AxesArgs, given: &Given) -> StructureSpec {
         let own = self.spec();
         let unit = given.has("unit").then(|| axes.unit.metres());
@@ -60,22 +60,23 @@ pub(crate) struct LengthUnit {
     pub(crate) metres: f64,
 }
 
-const LENGTHS: [(LengthUnit, &str); 5] = [
+const LENGTHS: [(LengthUnit, &str); 6] = [
     (LengthUnit { word: "m", metres: 1.0 }, "Metres"),
     (LengthUnit { word: "cm", metres: 0.01 }, "Centimetres"),
     (LengthUnit { word: "mm", metres: 0.001 }, "Millimetres"),
+    (LengthUnit { word: "ft", metres: 0.3048 }, "International feet"),
     (LengthUnit { word: "0.1mm", metres: 0.000_1 }, "Tenths of a millimetre"),
     (LengthUnit { word: "um", metres: 0.000_001 }, "Micrometres"),
 ];
 
 impl LengthUnit {
-    /// The same as a unit that all files may have.
+    /// Returns the unit, if it is one that all files may have.
     pub(crate) fn unit(self) -> Option<Unit> {
         Unit::from_word(self.word)
     }
 }
 
-/// The words of [`LengthUnit`].
+/// Returns the words of [`LengthUnit`].
 pub(super) fn length_words() -> impl TypedValueParser<Value = LengthUnit> {
     let words = LENGTHS.map(|(unit, help)| PossibleValue::new(unit.word).help(help));
     let find = |word: String| LENGTHS.iter().map(|l| l.0).find(|u| u.word == word).ok_or("no unit");

@@ -1,4 +1,4 @@
-//! `burgeon bloom at`: what a law has on any day.
+//! `burgeon bloom at`: the values of a law on any day.
 
 use burgeon::Warning;
 use burgeon::bloom::{Form, GrowthLaw, Quantity, RegionLaw};
@@ -19,10 +19,10 @@ struct Row {
     axis: Quantity,
     form: Form,
     determined: bool,
-    /// The day is before the first or after the last that was measured.
+    /// Whether the day is before the first or after the last measured one.
     extrapolated: bool,
     value_m: f64,
-    /// 9 of 10 new measurements lie between these.
+    /// Bounds between which 9 of 10 new measurements lie.
     low_m: Option<f64>,
     high_m: Option<f64>,
 }
@@ -95,7 +95,7 @@ pub(super) fn tell_days(args: &BloomAtArgs) -> Outcome {
     Ok(())
 }
 
-/// What is not to be trusted in these values.
+/// Warns of values that are not to be trusted.
 fn doubts(law: &GrowthLaw, values: &[Row]) -> Report {
     let mut out = Report::default();
     let open = values.iter().filter(|v| !v.determined).count();

@@ -36,7 +36,7 @@ fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
     super::plant_formats(args)
 }
 
-/// A drawing whose flowers open.
+/// Opens a drawing of flowers.
 pub(super) fn drawn_flower(
     args: &BloomRunArgs,
     path: &Path,
@@ -60,7 +60,7 @@ pub(super) fn drawn_flower(
     let (plant, made_ms) = machine.timed(|| OpeningPlant::new(&drawing, &options, seed, &machine.run()));
     let mut plant = plant.map_err(|e| match e {
         OpeningError::Make(MakeError::Cancelled(_)) => Failure::Cancelled,
-        other => Failure::at(path, other),
+        other => Failure::bad_file(path, other),
     })?;
     if let Some(edits) = &args.edits {
         edits::some_done(edits, &plant.item, count)?;
@@ -78,7 +78,7 @@ pub(super) fn drawn_flower(
         days: [0.0, plant.days[0] + plant.days[1]],
         best: plant.days[0],
         shape: Box::new(|day| {
-            let open = plant.at(day, &law, seed, &machine.run())?;
+            let open = plant.make_on_day(day, &law, seed, &machine.run())?;
             let levels = plant.levels(&open, &levels_of(args), &machine.run())?;
             Ok(Shown {
                 plant: Some(open.plant),
@@ -96,7 +96,7 @@ pub(super) fn drawn_flower(
     tell(args, machine, told, written, outputs)
 }
 
-/// A flower by its name, or of a file of its own; none for scans and drawings.
+/// Returns a flower by its name, or from a file of its own; `None` for scans and drawings.
 pub(crate) fn species(start: &Path) -> Outcome<Option<FlowerSpec>> {
     let preset = start.to_str().and_then(bloom::preset).filter(|_| !start.exists() || start.is_dir());
     if preset.is_some()
@@ -106,9 +106,9 @@ pub(crate) fn species(start: &Path) -> Outcome<Option<FlowerSpec>> {
         return Ok(preset);
     }
     let text = files::read_text(start)?;
-    // A file of stages has none.
+    // A file of stages has no whorls.
     let whorls = burgeon::spec::Node::from_toml(&text).is_ok_and(|tree| tree.field("whorls").is_some());
-    whorls.then(|| burgeon::spec::from_toml(&text).map_err(|e| Failure::at(start, e))).transpose()
+    whorls.then(|| burgeon::spec::from_toml(&text).map_err(|e| Failure::bad_file(start, e))).transpose()
 }
 
 pub(super) fn flower(
@@ -135,7 +135,7 @@ pub(super) fn flower(
     }
     let failed = |stopped| match stopped {
         Stopped::Cancelled(_) => Failure::Cancelled,
-        Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
+        Stopped::OverBudget(much) => Failure::bad_file(Path::new(&args.start), much),
     };
     let mut head = report::of_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
     head.engine = args.export.report();

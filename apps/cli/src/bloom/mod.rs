@@ -35,7 +35,7 @@ pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
 fn read_law(path: &Path) -> Outcome<GrowthLaw> {
     let text = files::read_text(path)?;
     let law: GrowthLaw = serde_json::from_str(&text).map_err(|e| {
-        Failure::at(
+        Failure::bad_file(
             path,
             format_args!(
                 "is no growth law: {}; make one with `burgeon bloom fit`",
@@ -45,37 +45,37 @@ fn read_law(path: &Path) -> Outcome<GrowthLaw> {
     })?;
     let fault = law.validate().next();
     match fault {
-        Some(fault) => Err(Failure::at(path, format_args!("cannot be used: {fault}"))),
+        Some(fault) => Err(Failure::bad_file(path, format_args!("cannot be used: {fault}"))),
         None => Ok(law),
     }
 }
 
-/// What there is at a day.
+/// Results at a day.
 struct Shown {
-    /// None of scans, of which only points are known.
+    /// `None` for scans, of which only points are known.
     plant: Option<Plant>,
     model: Model,
-    /// Coarser copies and the like, of one shape.
+    /// Coarser copies and other levels, of one shape.
     levels: Levels,
-    /// The share of petal triangles that cross another petal.
+    /// Share of petal triangles that cross another petal.
     overlap: Option<f64>,
-    /// What was checked of the plant, if that was of this day.
+    /// Checks of the plant, if they belong to this day.
     checks: Vec<CheckReport>,
 }
 
 type Shape<'a> = Box<dyn FnMut(f64) -> Outcome<Shown> + 'a>;
 
-/// Shapes over time, wherever they come from.
+/// Shapes over time, from any source.
 struct Show<'a> {
     name: String,
     /// First and last day, in the user's count.
     days: [f64; 2],
-    /// The day of a picture that names none.
+    /// Default day of a picture.
     best: f64,
     shape: Shape<'a>,
 }
 
-/// The outputs of `run`: -o is a file, or a folder for the shapes of all days.
+/// Plans the outputs of `run`: -o is a file, or a folder for the shapes of all days.
 fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
     let start = PathBuf::from(&args.start);
     let inputs = [
@@ -94,9 +94,12 @@ fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
         }
         (None, Some(_)) => {
             let endings = ModelFormat::written_endings();
-            return Err(Failure::at(&args.output, format_args!("has no extension; end it with {endings}")));
+            return Err(Failure::bad_file(
+                &args.output,
+                format_args!("has no extension; end it with {endings}"),
+            ));
         }
-        // First: a report may lie in it.
+        // Made first: a report may lie in it.
         (None, None) => outputs.folder(&args.output)?,
     }
     if let Some(png) = &args.png {
@@ -149,11 +152,11 @@ fn plant_formats(args: &BloomRunArgs) -> Outcome {
         &format!("models of one day (--day) as {}", ModelFormat::endings_with(Room::Wind)),
         "none is made",
     )?;
-    // Scans have axes and a unit themselves.
+    // Scans have their own axes and unit.
     if args.plant { Ok(()) } else { args.given.check_axes(written.holds(Room::Axes)) }
 }
 
-/// What is said of a law that sets no pace.
+/// Returns the warning about a law that sets no pace.
 fn no_pace(args: &BloomRunArgs, law: &GrowthLaw) -> Option<String> {
     let path = args.law.as_ref().filter(|_| !law.sets_pace())?;
     Some(format!(
@@ -191,7 +194,7 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     )
 }
 
-/// The edits by hand that are asked for.
+/// Returns the requested hand edits.
 fn hand_edits(args: &BloomRunArgs) -> Outcome<Vec<PlantEdit>> {
     Ok(args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default())
 }

@@ -24,11 +24,11 @@ use crate::output::Outputs;
 use crate::stages::{self, Loaded};
 use crate::{edits, files, inputs, poses, report};
 
-/// Fails on options that shapes of these scans have no use for.
+/// Fails on options that shapes of these scans do not use.
 fn check(args: &BloomRunArgs) -> Outcome {
     let start = Path::new(&args.start);
     if !args.plant && files::extension(&args.output).is_some() {
-        // Of points only surfaces are known, no structure.
+        // Points have only surfaces, no structure.
         files::writable(&args.output)?;
     }
     let several =
@@ -72,7 +72,7 @@ pub(super) fn run(
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
     let law = law.unwrap_or_else(|| GrowthLaw::even(first_day, last_day));
     if args.plant && loaded.mesh.is_some() {
-        return Err(Failure::at(
+        return Err(Failure::bad_file(
             start,
             "is a model with faces; --plant makes plants of scans, which are points",
         ));
@@ -98,11 +98,11 @@ pub(super) fn run(
         best: last_day,
         shape: Box::new(|day| {
             let organs = made.shape(day, args.frame)?;
-            // What single precision holds, squares included.
+            // The range of single precision, including squares.
             if !organs.points.iter().all(|p| p.abs().max_element() <= 1e15) {
                 let line =
                     format!("on day {day} the shape has no finite size; choose a day nearer to the stages");
-                return Err(Failure::at(start, line));
+                return Err(Failure::bad_file(start, line));
             }
             if let Some(options) = &options_of_plant {
                 let (plant, told) =
@@ -129,7 +129,7 @@ pub(super) fn run(
     let written = written?;
     drop(show);
     let mut head = report::of_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
-    head.input.offset_m = loaded.origin.told(&loaded.axes);
+    head.input.offset_m = loaded.origin.offset_in(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
     head.items[0].warnings.extend(no_pace(args, &made.law));
     head.items[0].warnings.extend(poses::doubts(&made.settled.steps));
@@ -151,12 +151,12 @@ pub(super) fn run(
     tell(args, machine, told, written, outputs)
 }
 
-/// Scans on their way from day to day.
+/// Scans in motion from day to day.
 struct Scans<'a> {
     start: &'a Path,
     compute: &'a Run<'a>,
     settled: Settled,
-    /// None for one day of clouds.
+    /// `None` for one day of clouds.
     motion: Option<Motion>,
     law: GrowthLaw,
     spec: MotionSpec,
@@ -175,7 +175,7 @@ impl<'a> Scans<'a> {
             straight: args.straight,
         };
         let settled = bloom::settle(&loaded.stages, &spec.register, compute)?;
-        // A cloud of one day has no vertices to keep: it holds the points of both scans round it. So has a plant.
+        // A cloud of one day has no vertices to keep: it holds the points of both adjacent scans. So does a plant.
         let motion = match args.day {
             Some(_) if loaded.mesh.is_none() => None,
             _ if args.plant => None,
@@ -189,15 +189,17 @@ impl<'a> Scans<'a> {
         let failed = Failure::bloom(self.start);
         let mut organs = match &self.motion {
             Some(motion) => {
-                let points = motion.at(day - self.first_day, self.compute).map_err(failed)?;
+                let points = motion.points_on_day(day - self.first_day, self.compute).map_err(failed)?;
                 Organs { rows: motion.organs.clone(), points, colors: motion.colors(day - self.first_day) }
             }
-            // One scan is one day.
+            // One scan has one day.
             None if self.settled.stages.len() == 1 => {
                 let organs = self.settled.stages.iter().flat_map(|s| &s.organs);
-                Organs::of(organs.map(OrganPoints::from).collect())
+                Organs::from_points(organs.map(OrganPoints::from).collect())
             }
-            None => Organs::of(self.settled.day(&self.law, &self.spec, day, self.compute).map_err(failed)?),
+            None => Organs::from_points(
+                self.settled.day(&self.law, &self.spec, day, self.compute).map_err(failed)?,
+            ),
         };
         let pose = self.settled.pose(day);
         if frame == FrameWord::Scanner && pose != RigidMotion::REST {
@@ -206,7 +208,7 @@ impl<'a> Scans<'a> {
         Ok(organs)
     }
 
-    /// What each registration left.
+    /// Returns the residual of each registration.
     fn residuals(&self) -> Vec<ResidualReport> {
         let of_motion = self.motion.iter().flat_map(|m| &m.residuals);
         let of_motion =
@@ -222,7 +224,7 @@ impl<'a> Scans<'a> {
     }
 }
 
-/// The error against the scan of --compare: as the shape stands, and after its best rigid move.
+/// Returns the error against the scan of --compare: of the shape as it stands, and after its best rigid motion.
 fn compared(
     args: &BloomRunArgs,
     made: &Scans<'_>,
@@ -231,11 +233,11 @@ fn compared(
     machine: &Machine,
 ) -> Outcome<Option<(ErrorReport, ErrorReport)>> {
     let (Some(scan), Some(day)) = (&args.compare, args.day) else { return Ok(None) };
-    // As the stages are: their file may say unit and up axis.
+    // In the same way as the stages: their file may give unit and up axis.
     let measured = stages::read_points(scan, loaded, options.clean, Seed::new(args.seed), machine)?;
     let organs = made.shape(day, FrameWord::Scanner)?;
     let shape = match plant {
-        // Of a plant it is its surface that is compared.
+        // The surface of a plant is compared.
         Some(options) => {
             let made = make_seedling(&loaded.name, &organs.rows(), options, made.compute);
             burgeon::surface_places(&made.map_err(failed(scan))?.0.model)
@@ -259,12 +261,12 @@ fn compared(
 struct Organs {
     rows: Vec<(String, core::ops::Range<usize>)>,
     points: Vec<DVec3>,
-    /// Of each organ; empty or one a point.
+    /// Colours of each organ; empty, or one for each point.
     colors: Vec<Vec<[u8; 3]>>,
 }
 
 impl Organs {
-    /// Each organ with its points.
+    /// Returns each organ with its points.
     fn rows(&self) -> Vec<OrganPoints> {
         let of = |((name, rows), colors): (&(String, core::ops::Range<usize>), &Vec<[u8; 3]>)| OrganPoints {
             name: name.clone(),
@@ -274,7 +276,7 @@ impl Organs {
         self.rows.iter().zip(&self.colors).map(of).collect()
     }
 
-    fn of(organs: Vec<OrganPoints>) -> Self {
+    fn from_points(organs: Vec<OrganPoints>) -> Self {
         let mut out = Self { rows: Vec::new(), points: Vec::new(), colors: Vec::new() };
         for OrganPoints { name, points, colors } in organs {
             out.colors.push(colors);
@@ -286,7 +288,7 @@ impl Organs {
     }
 }
 
-/// What is asked of a plant that is made of scans.
+/// Returns the options of a plant made of scans.
 fn plant_options(args: &BloomRunArgs) -> Outcome<SeedlingOptions> {
     let mut options = SeedlingOptions::default();
     options.leaf.edits = hand_edits(args)?;
@@ -297,7 +299,7 @@ fn plant_options(args: &BloomRunArgs) -> Outcome<SeedlingOptions> {
     Ok(options)
 }
 
-/// The plant of a day, and what is told of it.
+/// Makes the plant of a day, and its warnings.
 fn plant_of(
     name: &str,
     organs: &Organs,
@@ -315,7 +317,7 @@ fn failed(path: &Path) -> impl Fn(SeedlingError) -> Failure + '_ {
         SeedlingError::Leaf(LeafError::Cancelled(_)) | SeedlingError::Organ(BloomError::Cancelled) => {
             Failure::Cancelled
         }
-        other => Failure::at(path, other),
+        other => Failure::bad_file(path, other),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What `burgeon bloom run` tells: its report, its lines.
+//! Output of `burgeon bloom run`: its report and its lines.
 
 use burgeon::bloom::ShapeError;
 use burgeon::{OrganFit, RunReport};
@@ -53,7 +53,7 @@ pub(super) struct ResidualReport {
     pub(super) error: ErrorReport,
 }
 
-/// What `run` adds to the report.
+/// Additions of `run` to the report.
 #[derive(Debug, Serialize)]
 struct MotionReport {
     #[serde(flatten)]
@@ -64,17 +64,17 @@ struct MotionReport {
     lattice: Option<[usize; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<ErrorReport>,
-    /// The error after the best rigid move of the shape onto the scan.
+    /// The error after the best rigid motion of the shape onto the scan.
     #[serde(skip_serializing_if = "Option::is_none")]
     aligned: Option<ErrorReport>,
-    /// How plant and organs moved between scans.
+    /// Motion of plant and organs between scans.
     poses: Vec<poses::PoseReport>,
-    /// What the registration of each organ left.
+    /// Residual of the registration of each organ.
     residuals: Vec<ResidualReport>,
     /// Share of petal triangles that cross another petal, at each frame of a flower.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     overlap: Vec<f64>,
-    /// The plant that was made of scans (--plant), of the last day that was written.
+    /// The plant that was made of scans (--plant), for the last day that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     scanned: Option<ScannedPlant>,
     stages: Vec<stages::StageReport>,
@@ -85,12 +85,12 @@ struct MotionReport {
 pub(super) struct ScannedPlant {
     pub(super) day: f64,
     pub(super) organs: Vec<OrganFit>,
-    /// Its surface against the points that it was made of.
+    /// Distances between its surface and the points that it was made of.
     pub(super) error: ErrorReport,
 }
 
 impl ScannedPlant {
-    /// Lines for people.
+    /// Returns lines for people.
     fn lines(&self) -> Vec<String> {
         let organ = |o: &OrganFit| {
             let axis = format!("{:.1} mm long, {:.2} mm thick", o.axis_mm, 2.0 * o.radius_mm);
@@ -115,7 +115,7 @@ impl ScannedPlant {
     }
 }
 
-/// Everything that the report of `run` is made of, beside what was written.
+/// Inputs of the report of `run`, in addition to what was written.
 pub(super) struct BloomReport {
     pub(super) head: RunReport,
     pub(super) residuals: Vec<ResidualReport>,

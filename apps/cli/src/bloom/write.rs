@@ -17,16 +17,16 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{files, levels, names, picture};
 
-/// What was written.
+/// Results of writing.
 #[derive(Default)]
 pub(super) struct Written {
     pub(super) frames: u32,
-    /// Of the last one.
+    /// Counts of the last shape.
     pub(super) counts: Counts,
     pub(super) measures: Option<Measures>,
     pub(super) digest: String,
     pub(super) overlap: Vec<f64>,
-    /// Of the first shape of which one failed, or of the last.
+    /// Checks of the first shape with a failed one, or of the last shape.
     pub(super) checks: Vec<CheckReport>,
     pub(super) warnings: Vec<String>,
 }
@@ -91,8 +91,8 @@ pub(super) fn write_show(
                 written.take(&shown);
                 models.push(shown.model);
             }
-            // The frame nearest to full bloom is the model itself: what shows no animation, or no colours of one,
-            // shows the open flower.
+            // The model itself is the frame nearest to full bloom: a program that shows no animation, or no colours of
+            // one, shows the open flower.
             let far = |k: u32| (at(k) - show.best).abs();
             let best = (0..args.frames).min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or(0);
             #[expect(clippy::cast_possible_truncation, reason = "seconds of an animation")]
@@ -127,14 +127,14 @@ pub(super) fn write_show(
     Ok(written)
 }
 
-/// What is made besides the finest meshes: of an animation and of a folder nothing.
+/// Returns the levels in addition to the finest meshes: none for an animation or a folder.
 pub(super) fn levels_of(args: &BloomRunArgs) -> LevelSpec {
     let one = files::extension(&args.output).is_some() && args.film().is_none();
     let format = files::plant_writable(&args.output).ok().filter(|_| one);
     args.export.levels(format)
 }
 
-/// Clouds as PLY in double precision, everything else by the writers of models.
+/// Writes clouds as PLY in double precision, everything else by the writers of models.
 fn write_one(
     outputs: &mut Outputs,
     path: &Path,
@@ -147,7 +147,7 @@ fn write_one(
     items[0].counts.triangles = model.triangle_count() as u64;
     let mut cache = PngCache::new();
     if let Some(plant) = &plant {
-        // --unit and --up were those of the scans: glTF in metres with +Y up is no surprise.
+        // --unit and --up applied to the scans: glTF in metres with +Y up is expected.
         let format = files::plant_writable(path)?;
         let plain = AxesArgs::default();
         let axes = if format.holds(Room::Axes) { &args.axes } else { &plain };
@@ -177,7 +177,7 @@ fn write_one(
         outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out))?;
         return Ok(items.swap_remove(0));
     }
-    // --unit and --up were those of the scans: glTF in metres with +Y up is no surprise.
+    // --unit and --up applied to the scans: glTF in metres with +Y up is expected.
     let axes = if format.holds(Room::Axes) { axes } else { &ExportSpec::default() };
     files::write_model(outputs, Goal::new("-o", path), &model, format, axes, &mut cache)?;
     Ok(items.swap_remove(0))

@@ -15,7 +15,7 @@ use crate::output::{self, Outputs};
 #[derive(Debug)]
 pub(super) struct FolderDisk {
     path: PathBuf,
-    /// Makes the folder go again if nothing comes to lie in it.
+    /// Removes the folder again if it stays empty.
     _made: Outputs,
     /// Outputs that are put in place at the end of the command.
     pub(super) outputs: Outputs,
@@ -36,7 +36,7 @@ impl TileDisk for FolderDisk {
     fn read(&self, file: &str, most: u64) -> Outcome<Option<Vec<u8>>> {
         let path = self.path.join(file);
         let failed = |e: &io::Error| Failure::io(&path, "read", e);
-        // Not an input: it may be written over.
+        // Not an input: it may be overwritten.
         let file = match inputs::open_own(&path) {
             Ok(file) => file,
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -100,14 +100,14 @@ impl From<ForestTilesError> for Failure {
     }
 }
 
-/// Fails early for a folder that is not a forest's.
+/// Fails early for a folder that does not belong to a forest.
 pub(super) fn check(path: &Path) -> Outcome {
     if path.exists() && !path.is_dir() {
-        return Err(Failure::at(path, "is a file, but a forest needs a folder; name another one"));
+        return Err(Failure::bad_file(path, "is a file, but a forest needs a folder; name another one"));
     }
     let is_ours = [TILES_MANIFEST, TILES_JOURNAL].iter().any(|file| path.join(file).exists());
     if !is_ours && path.is_dir() && has_files(path)? {
-        return Err(Failure::at(
+        return Err(Failure::bad_file(
             path,
             "is a folder with other files in it, and tiles of a forest want one of their own; name a new one",
         ));
@@ -115,7 +115,7 @@ pub(super) fn check(path: &Path) -> Outcome {
     Ok(())
 }
 
-/// A folder has files but those that are hidden.
+/// Whether a folder has files other than hidden ones.
 fn has_files(path: &Path) -> Outcome<bool> {
     let entries = fs::read_dir(path).map_err(|e| Failure::io(path, "read", &e))?;
     let mut names = entries.filter_map(|e| Some(e.ok()?.file_name()));

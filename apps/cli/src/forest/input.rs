@@ -15,14 +15,14 @@ use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::{files, grow, inputs};
 
-/// An inventory, a height map or a mask is no larger.
+/// Largest size of an inventory, a height map or a mask, bytes.
 const MOST_BYTES: u64 = 1 << 30;
 /// Options of inventories.
 const OF_INVENTORIES: [&str; 5] = ["crs", "setting", "species", "bad_rows", "year"];
-/// Options of the ground, which a spec has within.
+/// Options of the ground, which a spec contains.
 const OF_GROUND: [&str; 4] = ["ground", "metres_per_cell", "heights", "lean"];
 
-/// The trees, on their ground.
+/// Reads the trees, on their ground.
 pub(super) fn read(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome<(Stand, StandReport)> {
     let is_spec = files::extension(&args.input).is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let (stand, tally) = if is_spec { grown(args, machine, told)? } else { inventory(args, machine, told)? };
@@ -45,8 +45,8 @@ fn inventory(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome
     };
     let (mut stand, report) = read_inventory(&bytes, &spec, &machine.run()).map_err(|e| match e {
         InventoryError::Cancelled(_) => Failure::Cancelled,
-        InventoryError::OverBudget(e) => Failure::at(&args.input, e),
-        e => Failure::at(&args.input, in_options(&e)),
+        InventoryError::OverBudget(e) => Failure::bad_file(&args.input, e),
+        e => Failure::bad_file(&args.input, in_options(&e)),
     })?;
     let tally = StandReport::from(&report);
     told.warnings.extend(report.report.warnings);
@@ -55,11 +55,11 @@ fn inventory(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome
         let file = path.to_string_lossy().into_owned();
         let spec = ground_spec(path, file, &args.ground)?;
         let ground = burgeon::read_ground(&spec, Some(origin), &GivenFiles(path), &machine.run());
-        let ground = ground.map_err(|e| e.at(path))?;
+        let ground = ground.map_err(|e| e.into_failure(path))?;
         let outside = ground.set_down(&mut stand, args.ground.lean.unwrap_or(0.0), &machine.run())?;
         if outside as usize == stand.trees.len() {
             let what = "has no height where the trees stand: are both in the same projection and unit?";
-            return Err(Failure::at(path, what));
+            return Err(Failure::bad_file(path, what));
         }
         if outside > 0 {
             told.warn(
@@ -73,7 +73,7 @@ fn inventory(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome
     Ok((stand, tally))
 }
 
-/// The message of an error, with the options that help.
+/// Returns the message of an error, with the options that help.
 fn in_options(error: &InventoryError) -> String {
     let hint = match error {
         InventoryError::Degrees(_) => " (--crs local or --crs utm)",
@@ -90,13 +90,13 @@ fn in_options(error: &InventoryError) -> String {
     format!("{error}{hint}")
 }
 
-/// The ground of an inventory, by the ending of its file.
+/// Returns the ground of an inventory, by the ending of its file.
 fn ground_spec(path: &Path, file: String, args: &GroundArgs) -> Outcome<GroundSpec> {
     match files::extension(path).unwrap_or_default().to_ascii_lowercase().as_str() {
         "png" => {
             let (Some(metres_per_cell), Some([low_m, high_m])) = (args.metres_per_cell, args.heights) else {
                 let what = "is a height map whose metres are not known: give --metres-per-cell M and --heights LOW,HIGH";
-                return Err(Failure::at(path, what));
+                return Err(Failure::bad_file(path, what));
             };
             Ok(GroundSpec::Png { file, metres_per_cell, low_m, high_m, no_data: None })
         }
@@ -111,16 +111,16 @@ struct GivenFiles<'a>(&'a Path);
 /// The files that a spec names.
 struct NamedFiles<'a>(&'a Path);
 
-/// Why a site was not read: its content, or a file that was told of already.
+/// Reason why a site was not read: its content, or a file that was reported already.
 enum SiteFailure {
     Site(SiteError),
     File(Failure),
 }
 
 impl SiteFailure {
-    fn at(self, path: &Path) -> Failure {
+    fn into_failure(self, path: &Path) -> Failure {
         match self {
-            Self::Site(error) => Failure::at(path, error),
+            Self::Site(error) => Failure::bad_file(path, error),
             Self::File(failure) => failure,
         }
     }
@@ -162,26 +162,27 @@ fn read_mesh(path: &Path) -> Outcome<NamedMesh> {
     Ok(model.triangles())
 }
 
-/// A stand that grows by its spec.
+/// Grows a stand by its spec.
 fn grown(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome<(Stand, StandReport)> {
     args.given.refuse(&OF_INVENTORIES, "inventories", "this is the spec of a stand")?;
     args.given.refuse(&OF_GROUND, "inventories", "the spec of a stand names its own ground")?;
     let spec: ForestSpec = files::read_spec(&args.input)?;
     let run = machine.run();
     let named = NamedFiles(&args.input);
-    let ground = burgeon::read_ground(&spec.ground, None, &named, &run).map_err(|e| e.at(&args.input))?;
-    let masks = burgeon::read_masks(&spec, &named, &run).map_err(|e| e.at(&args.input))?;
+    let ground =
+        burgeon::read_ground(&spec.ground, None, &named, &run).map_err(|e| e.into_failure(&args.input))?;
+    let masks = burgeon::read_masks(&spec, &named, &run).map_err(|e| e.into_failure(&args.input))?;
     let site = Site { ground: &ground, masks: &masks };
     let grown = grow_stand_on(&spec, &site, Seed::new(args.seed), &run).map_err(|e| match e {
         ForestError::Cancelled(_) => Failure::Cancelled,
-        e => Failure::at(&args.input, e),
+        e => Failure::bad_file(&args.input, e),
     })?;
     let tally = StandReport::from(&grown);
     told.warnings.extend(grown.report.warnings);
     Ok((grown.stand, tally))
 }
 
-/// The specs of the species of a stand, in their order.
+/// Returns the specs of the species of a stand, in their order.
 pub(super) fn specs(args: &ForestArgs, stand: &Stand, told: &mut Report) -> Outcome<Vec<TreeSpec>> {
     let spec = |name: &String| {
         if let Some(preset) = Preset::find(name) {

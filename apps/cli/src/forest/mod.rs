@@ -25,10 +25,10 @@ use crate::output::Outputs;
 use crate::{picture, report, say};
 use folder::FolderDisk;
 
-/// Pixels of a side of a plan.
+/// Side of a plan, pixels.
 const MAP: u32 = 1_536;
 
-/// What was made.
+/// Figures of the result.
 #[derive(Debug, Default, Serialize)]
 struct ForestTally {
     trees: u64,
@@ -36,7 +36,7 @@ struct ForestTally {
     tiles: u64,
     /// Grown plants that stand for the trees.
     variants: u64,
-    /// Levels of detail.
+    /// Number of levels of detail.
     levels: u32,
     /// Most trees of a tile of the finest level.
     tile_trees: u32,
@@ -44,9 +44,9 @@ struct ForestTally {
     dbh_error_max_m: f64,
     dbh_error_mean_m: f64,
     crown_error_max_m: f64,
-    /// Trees that the limits of scales changed.
+    /// Trees that a limit of scaling changed.
     clipped: u64,
-    /// Trees whose stems are more than a quarter off.
+    /// Trees whose stems differ by more than a quarter.
     stems_off: u64,
     /// Files of the folder, and their bytes.
     files: u64,
@@ -60,7 +60,7 @@ struct ForestTally {
 }
 
 impl ForestTally {
-    fn of(plan: &ForestPlan, input: StandReport) -> Self {
+    fn new(plan: &ForestPlan, input: StandReport) -> Self {
         Self {
             trees: plan.stand.trees.len() as u64,
             species: plan.stand.species.len() as u64,
@@ -100,8 +100,8 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     outputs.check()?;
     let plan = machine.with_progress("growing", |_| plan(args, stand, &machine, &mut told))?;
     let disk = FolderDisk::new(&args.output, outputs)?;
-    let mut folder = TileFolder::open(disk, &plan.key()).map_err(|f| f.of(&args.output))?;
-    let mut tally = ForestTally::of(&plan, input);
+    let mut folder = TileFolder::open(disk, &plan.key()).map_err(|f| f.in_file(&args.output))?;
+    let mut tally = ForestTally::new(&plan, input);
     if let Some(id) = args.tile {
         let tile = plan.tile(id)?;
         let models = models(&plan, ModelsOf::Tile(tile), &mut folder, &machine)?;
@@ -152,7 +152,7 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     Ok(())
 }
 
-/// Fails on options that nothing uses.
+/// Fails on unused options.
 fn check_used(args: &ForestArgs) -> Outcome {
     let surface = &args.surface;
     if surface.finest > surface.lods {
@@ -180,7 +180,7 @@ fn check_used(args: &ForestArgs) -> Outcome {
     Ok(())
 }
 
-/// The level of the files that hold all trees, among those of the tileset.
+/// Returns the level of the files that hold all trees, among those of the tileset.
 fn one_level(args: &ForestArgs) -> u32 {
     let surface = &args.surface;
     let level = args.level.unwrap_or((surface.finest + 1).min(surface.lods));
@@ -207,7 +207,7 @@ fn plan(args: &ForestArgs, stand: Stand, machine: &Machine, told: &mut Report) -
         tile_trees: args.tile_trees,
         packing: surface.pack.packing(),
     };
-    ForestPlan::new(stand, &specs, spec, &machine.run()).map_err(|e| Failure::from(e).of(&args.input))
+    ForestPlan::new(stand, &specs, spec, &machine.run()).map_err(|e| Failure::from(e).in_file(&args.input))
 }
 
 fn models(
@@ -228,7 +228,7 @@ fn tiles(
     machine.with_progress("tiles", |p| writer.tiles(tiles, folder, &machine.run(), &shown(p)))
 }
 
-/// Shows how far a step is.
+/// Shows the progress of a step.
 fn shown(progress: &Progress) -> impl Fn(usize, usize) + '_ {
     |done, all| {
         progress.expect(all);

@@ -1,9 +1,9 @@
-//! `burgeon light`: what each organ of a plant absorbs.
+//! `burgeon light`: the light that each organ of a plant absorbs.
 //!
 //! | file | owns |
 //! |---|---|
 //! | `source` | sky and sun by the options |
-//! | `stand` | what stands in the light: a plant of any maker, or the plants of a project |
+//! | `stand` | the plants in the light: a plant of any maker, or the plants of a project |
 
 mod source;
 mod stand;
@@ -27,14 +27,14 @@ use crate::output::Outputs;
 use crate::{checks, picture, report, say};
 use stand::Grown;
 
-/// Figures of the plant in light, and where it comes from.
+/// Figures of the plant in light, and the sources of light.
 #[derive(Debug, Serialize)]
 struct LightTally {
     #[serde(flatten)]
     figures: LightFigures,
     /// Rows of the table.
     rows: u64,
-    /// What the end of the colours' scale stands for, for each square metre.
+    /// Light at the end of the colours' scale, for each square metre.
     colours_to_per_m2: f64,
     #[serde(flatten)]
     sources: SourceFigures,
@@ -47,7 +47,7 @@ struct LightRun {
     light: LightTally,
 }
 
-/// What the output is.
+/// Kind of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Output {
     Table,
@@ -78,7 +78,7 @@ pub(crate) fn light(args: &LightArgs) -> Outcome {
     let stand = grown.stood()?;
     if let (Some((path, Output::Structure(_))), [_, _, ..]) = (args.output.as_deref().zip(output), &stand[..])
     {
-        return Err(Failure::at(path, ONE_PLANT));
+        return Err(Failure::bad_file(path, ONE_PLANT));
     }
     let seed = Seed::new(args.seed.unwrap_or(1));
     let lit = machine
@@ -141,10 +141,10 @@ pub(crate) fn light(args: &LightArgs) -> Outcome {
     Ok(())
 }
 
-/// A file of structure is one plant.
+/// Message about a file of structure, which holds one plant.
 const ONE_PLANT: &str = "is the structure of one plant, and several stand in the light: write a table (.csv)";
 
-/// The structure of the only plant, with light in columns of its own.
+/// Writes the structure of the only plant, with light in columns of its own.
 fn write_structure(
     outputs: &mut Outputs,
     path: &Path,
@@ -152,7 +152,7 @@ fn write_structure(
     lit: &LitStand,
     stand: &[Stood<'_>],
 ) -> Outcome {
-    let [only] = stand else { return Err(Failure::at(path, ONE_PLANT)) };
+    let [only] = stand else { return Err(Failure::bad_file(path, ONE_PLANT)) };
     let columns = lit.columns(0, only.plant);
     let axes = ExportSpec { up: UpAxis::Z, ..ExportSpec::default() };
     outputs.write("-o", path, |out| burgeon::write_structure_with(only.plant, &columns, format, &axes, out))
@@ -166,7 +166,7 @@ fn output_of(path: &Path) -> Outcome<Output> {
     match files::extension(path) {
         Some(e) if e.eq_ignore_ascii_case("csv") => Ok(Output::Table),
         Some(e) if e.eq_ignore_ascii_case("glb") => Ok(Output::Model),
-        _ => Err(Failure::at(
+        _ => Err(Failure::bad_file(
             path,
             "light is written as a table (.csv), with the structure of the plant (.mtg, .opf) or on its model (.glb); end the name \
              with one of them",
@@ -191,7 +191,7 @@ fn options_of(args: &LightArgs, usual: LightOptions) -> LightOptions {
 fn failure(what: &Path, error: LightError) -> Failure {
     match error {
         LightError::Cancelled(_) => Failure::Cancelled,
-        e => Failure::at(what, e),
+        e => Failure::bad_file(what, e),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::args::{SkyWord, SourceArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files;
 
-/// All light, and what it is counted in.
+/// Returns all light, and its unit.
 pub(super) fn sources(args: &SourceArgs) -> Outcome<LightSources> {
     if let Some(path) = &args.sky_table {
         return measured(path);
@@ -36,7 +36,7 @@ fn shape(word: SkyWord) -> SkyShape {
     }
 }
 
-/// What is wrong, with the names of the options.
+/// Returns the message of an error, with the names of the options.
 fn in_options(error: &LightSourceError) -> String {
     match error {
         LightSourceError::ClearWithoutSun => {
@@ -50,7 +50,7 @@ fn in_options(error: &LightSourceError) -> String {
     }
 }
 
-/// A sky of a table.
+/// Reads a sky of a table.
 fn measured(path: &Path) -> Outcome<LightSources> {
     let text = files::read_text(path)?;
     let mut beams = Beams::default();
@@ -60,22 +60,22 @@ fn measured(path: &Path) -> Outcome<LightSources> {
         let cells: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
         let numbers: Option<Vec<f64>> = cells.iter().map(|c| c.parse().ok()).collect();
         let found = match numbers.as_deref() {
-            // Names of columns.
+            // The first row may hold the names of columns.
             None if number == 0 => continue,
             Some(&[azimuth_deg, elevation_deg, horizontal]) => {
                 beams.add_beam(SunPosition { azimuth_deg, elevation_deg }, horizontal)
             }
             _ => {
                 let what = "is no row of azimuth, elevation and W/m2, three numbers with commas between them";
-                return Err(Failure::at(path, format_args!("line {row} {what}")));
+                return Err(Failure::bad_file(path, format_args!("line {row} {what}")));
             }
         };
-        found.map_err(|e| Failure::at(path, format_args!("line {row}: {e}")))?;
+        found.map_err(|e| Failure::bad_file(path, format_args!("line {row}: {e}")))?;
     }
     LightSources::of_measured(beams).map_err(|e| match e {
         LightSourceError::Light(LightError::Dark) => {
-            Failure::at(path, "holds no light: give rows of azimuth, elevation and W/m2 above 0")
+            Failure::bad_file(path, "holds no light: give rows of azimuth, elevation and W/m2 above 0")
         }
-        other => Failure::at(path, other),
+        other => Failure::bad_file(path, other),
     })
 }

@@ -1,15 +1,16 @@
-//! What stands in the light: a plant of any maker, or all plants of a project.
+//! The plants in the light: a plant of any maker, or all plants of a project.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use burgeon::document::{
     Document, DocumentPlant, Editor, FlowerMaker, Maker, NewPlant, PlantCommand, PlantId, SceneCommand,
-    Settings, SketchCommand, TreeCommand,
+    Settings,
 };
 use burgeon::formats::read_drawings;
-use burgeon::skin::SkinSpec;
-use burgeon::{ItemReport, Preset, Report, SceneEvaluator, Seed, Stood, standing, tree_settings};
+use burgeon::{
+    ItemReport, Preset, Report, SceneEvaluator, Seed, Stood, shown_plants, stood_plants, tree_settings,
+    without_textures,
+};
 
 use crate::args::LightArgs;
 use crate::failure::{Failure, Outcome};
@@ -27,23 +28,22 @@ pub(super) struct Grown {
 impl Grown {
     pub(super) fn new(args: &LightArgs, told: &mut Report, machine: &Machine) -> Outcome<Self> {
         let path = &args.what;
-        let document = plain(path, document(args, told)?)?;
-        let seen: Vec<PlantId> =
-            document.plants().iter().filter(|p| !p.settings().hidden).map(DocumentPlant::id).collect();
+        let document = without_textures(&document(args, told)?).map_err(|e| Failure::bad_file(path, e))?;
+        let seen = shown_plants(&document);
         if document.plants().is_empty() {
-            return Err(Failure::at(path, files::EMPTY));
+            return Err(Failure::bad_file(path, files::EMPTY));
         }
         if seen.is_empty() {
-            return Err(Failure::at(
+            return Err(Failure::bad_file(
                 path,
                 "shows nothing: all of its plants are hidden; show one in the Studio",
             ));
         }
         let mut scene = SceneEvaluator::default();
         for id in &seen {
-            scene
-                .update(*id, &document, &machine.run())
-                .map_err(|e| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) })?;
+            scene.update(*id, &document, &machine.run()).map_err(|e| {
+                if e.is_cancelled() { Failure::Cancelled } else { Failure::bad_file(path, e) }
+            })?;
         }
         Ok(Self { document, seen, scene })
     }
@@ -52,17 +52,13 @@ impl Grown {
         self.document.name()
     }
 
-    /// The plants where they stand.
+    /// Returns the plants in their places.
     pub(super) fn stood(&self) -> Outcome<Vec<Stood<'_>>> {
-        let stood = |id: &PlantId| {
-            let (plant, made) = (self.document.plant(*id)?, self.scene.get(*id)?);
-            Some(Stood { standing: standing(plant, made.model), plant: made.plant?, layout: made.owners? })
-        };
-        let all: Option<Vec<_>> = self.seen.iter().map(stood).collect();
+        let all = stood_plants(&self.scene, &self.document, &self.seen);
         all.ok_or_else(|| Failure::Bug("a plant was not made".into()))
     }
 
-    /// What the report says of each plant.
+    /// Returns the report of each plant.
     pub(super) fn items(&self) -> Vec<ItemReport> {
         self.seen.iter().filter_map(|id| self.scene.get(*id)).map(|p| p.report()).collect()
     }
@@ -79,7 +75,7 @@ fn document(args: &LightArgs, told: &mut Report) -> Outcome<Document> {
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
     let stdin = inputs::is_stdin(what).then(|| files::peek(what)).transpose()?;
     let piped = stdin.as_ref().map(|(_, start)| files::sniff(start));
-    // A preset or a spec: of standard input, what is nothing else.
+    // A preset or a spec; from standard input, anything of no other kind.
     if is_preset || piped.map_or(is_spec, |kind| kind.is_none()) {
         let spec = match stdin {
             Some((input, _)) => grow::spec_of(what, &files::text_of(what, input)?, told)?,
@@ -94,10 +90,10 @@ fn document(args: &LightArgs, told: &mut Report) -> Outcome<Document> {
     match opened {
         (file, Kind::Drawing(format)) => {
             let mut drawings = read_drawings(file, format, &files::stem(what));
-            let first = drawings.next().ok_or_else(|| Failure::at(what, "holds no drawing"))?;
-            let read = first.map_err(|e| Failure::at(what, e))?;
+            let first = drawings.next().ok_or_else(|| Failure::bad_file(what, "holds no drawing"))?;
+            let read = first.map_err(|e| Failure::bad_file(what, e))?;
             if drawings.next().is_some() {
-                return Err(Failure::at(what, "holds several drawings; give one"));
+                return Err(Failure::bad_file(what, "holds several drawings; give one"));
             }
             told.warnings.extend(read.warnings);
             let document = Document::from_drawing(&read.drawing);
@@ -114,14 +110,14 @@ fn document(args: &LightArgs, told: &mut Report) -> Outcome<Document> {
                 "is the structure of a plant ({}), whose leaves have no surface; give a preset, a spec, a drawing or a project",
                 format.word()
             );
-            Err(Failure::at(what, what_it_is))
+            Err(Failure::bad_file(what, what_it_is))
         }
         (_, Kind::Model(format)) => {
             let what_it_is = format_args!(
                 "is a model ({}), of which is not known what its organs are; give a preset, a spec, a drawing or a project",
                 format.word()
             );
-            Err(Failure::at(what, what_it_is))
+            Err(Failure::bad_file(what, what_it_is))
         }
     }
 }
@@ -130,13 +126,13 @@ fn bug(e: impl std::fmt::Display) -> Failure {
     Failure::Bug(e.to_string())
 }
 
-/// A document of one plant.
+/// Makes a document of one plant.
 fn alone(args: &LightArgs, name: &str, maker: Maker) -> Outcome<Document> {
     let mut editor = Editor::new(Document::default());
     let sheet: Vec<PlantId> = editor.document().plants().iter().map(DocumentPlant::id).collect();
     let settings = Settings { name: name.to_owned(), maker, ..Settings::default() };
     let plant = NewPlant { settings, strokes: Vec::new() };
-    editor.run(SceneCommand::Add(Box::new(plant))).map_err(|e| Failure::at(&args.what, e))?;
+    editor.run(SceneCommand::Add(Box::new(plant))).map_err(|e| Failure::bad_file(&args.what, e))?;
     editor.run(SceneCommand::Rename(name.to_owned())).map_err(bug)?;
     if !sheet.is_empty() {
         editor.run(SceneCommand::Remove(sheet)).map_err(bug)?;
@@ -145,32 +141,13 @@ fn alone(args: &LightArgs, name: &str, maker: Maker) -> Outcome<Document> {
     seeded(args, editor.document().clone(), &ids)
 }
 
-/// With the seed that was asked for.
+/// Applies the requested seed.
 fn seeded(args: &LightArgs, document: Document, ids: &[PlantId]) -> Outcome<Document> {
     let mut editor = Editor::new(document);
     let seed = Seed::new(args.seed.unwrap_or(1));
     for id in ids {
         if editor.document().plant(*id).is_some_and(|p| p.settings().seed != seed) {
-            editor.run(PlantCommand::SetSeed(seed).of(*id)).map_err(bug)?;
-        }
-    }
-    Ok(editor.document().clone())
-}
-
-/// Without textures, which light does not see.
-fn plain(path: &Path, document: Document) -> Outcome<Document> {
-    let mut editor = Editor::new(document);
-    let plants: Vec<(PlantId, Maker)> =
-        editor.document().plants().iter().map(|p| (p.id(), p.settings().maker.clone())).collect();
-    for (id, maker) in plants {
-        let bare = |skin: &SkinSpec| skin.textures.then(|| SkinSpec { textures: false, ..skin.clone() });
-        let command = match maker {
-            Maker::Sketch(s) => bare(&s.skin).map(|skin| SketchCommand::SetSkin(skin).of(id)),
-            Maker::Tree(t) => bare(&t.skin).map(|skin| TreeCommand::SetSkin(skin).of(id)),
-            _ => None,
-        };
-        if let Some(command) = command {
-            editor.run(command).map_err(|e| Failure::at(path, e))?;
+            editor.run(PlantCommand::SetSeed(seed).for_plant(*id)).map_err(bug)?;
         }
     }
     Ok(editor.document().clone())

@@ -1,36 +1,36 @@
-//! The pages that a browser sees which is not in: how it comes in, and what the terminal shows for that.
+//! Pages for a browser that has not been admitted: the ways to enter, and what the terminal shows for them.
 
 use std::borrow::Cow;
 
 use super::answer::{ALWAYS, Answer};
 use super::gate::MOST_WRONG;
 
-/// What a browser is asked for at the door of the network.
+/// Request to a browser at the door of the network.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Asks<'a> {
     /// The code that the terminal shows.
     Code,
-    /// One press of a button: its link has this key. A program that shows a preview of a link presses nothing.
+    /// One press of a button, whose link has this key. A program that shows a preview of a link presses nothing.
     Button(&'a str),
-    /// A link: codes are not taken any more.
+    /// A link: codes are no longer accepted.
     Link,
 }
 
-/// Where a code is given.
+/// Form for a code.
 const CODE_FORM: &str = "<form method=post action=/enter>\
     <label>The code that the terminal shows · 终端显示的代码\
     <input name=code inputmode=numeric autocomplete=off autofocus maxlength=12></label>\
     <button>Come in · 进入</button></form>";
 
-/// What stands in its place once codes are stopped.
+/// Text in its place once codes are refused.
 const LINK_ALONE: &str = "<p>Codes are not taken any more, because too many wrong ones were given. Open the link that the \
     terminal shows, or start the program anew. · 错误代码过多，已不再接受代码。请打开终端显示的链接，或重新启动程序。</p>";
 
-/// The door of the network. `fingerprint`: of the certificate that this server has.
+/// Returns the page at the door of the network. `fingerprint`: of the certificate of this server.
 pub(crate) fn doorway(why: &str, asks: Asks<'_>, fingerprint: &str) -> Answer {
     let form = match asks {
         Asks::Code => Cow::Borrowed(CODE_FORM),
-        // 32 hexadecimal digits, as the gate knows the key.
+        // 32 hexadecimal digits, in the form that the gate uses.
         Asks::Button(key) => Cow::Owned(format!(
             "<p>The link is good for one browser. · 此链接只能供一个浏览器使用。</p>\
              <form method=post action=/enter><input type=hidden name=key value=\"{key}\">\
@@ -53,7 +53,7 @@ pub(crate) fn doorway(why: &str, asks: Asks<'_>, fingerprint: &str) -> Answer {
     page(&body, forms, &ALWAYS.replace("no-referrer", "same-origin"))
 }
 
-/// What a browser of this machine is told that has not the key of the link.
+/// Returns the answer to a browser of this machine without the key of the link.
 pub(crate) fn locked() -> Answer {
     page(
         "<h1>Burgeon Studio</h1><p role=alert>The file that was opened is given only to a browser that came by the whole link \
@@ -65,12 +65,12 @@ pub(crate) fn locked() -> Answer {
     )
 }
 
-/// What is said when codes have just been stopped.
+/// Returns the message when codes have just been refused.
 pub(crate) fn stopped() -> String {
     format!("This is not the code. After {MOST_WRONG} wrong ones no code is taken any more.")
 }
 
-/// A page of its own, without scripts, that nobody keeps.
+/// Returns a separate page, without scripts, that nobody caches.
 fn page(body: &str, forms: &str, always: &str) -> Answer {
     let body = format!(
         "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">\

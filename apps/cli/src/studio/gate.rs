@@ -1,47 +1,48 @@
-//! Who may come in from the network: a link and a code that work once, and what a browser was given for them.
+//! Admission from the network: a link and a code that work once, and the cookie that a browser gets for them.
 //!
-//! Guaranteed: without the key of the link, the code, or what was given for one of them, nothing is said but that it is
-//! needed; each works once, and a link that is only looked at is not used up; guesses are few. Nothing here reads a clock
-//! or a random number: both are given.
+//! Guaranteed: without the key of the link, the code, or a cookie obtained by one of them, the only answer is that it
+//! is needed; each works once, and opening a link does not use it up; guesses are few. Nothing here reads a clock or a
+//! random number: both are passed in.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
-/// Digits of a code.
+/// Number of digits of a code.
 const DIGITS: usize = 8;
-/// Wrong codes until a new one is shown, and until codes are no longer taken.
+/// Wrong codes after which a new one is shown.
 const WRONG: u32 = 5;
+/// Wrong codes after which codes are no longer accepted.
 pub(crate) const MOST_WRONG: u32 = 25;
-/// Browsers that are in at one time; the first goes when one more comes.
+/// Most browsers that are admitted at one time; the first is dropped when one more comes.
 const BROWSERS: usize = 16;
 
-/// Random bytes.
+/// Source of random bytes.
 pub(crate) type Random = fn(&mut [u8]);
 
-/// The key of a link, and a code: one is enough.
+/// The key of a link, and a code: either of them is enough.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Invitation {
     /// 32 hexadecimal digits.
     pub(crate) key: String,
-    /// 8 digits; nothing once too many wrong ones were given.
+    /// 8 digits; `None` after too many wrong ones.
     pub(crate) code: Option<String>,
 }
 
-/// What became of a try to come in.
+/// Result of an attempt to enter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Entry {
-    /// In, with what the browser keeps; the next browser needs another invitation.
+    /// Admitted, with the cookie of the browser; the next browser needs another invitation.
     In(String),
-    /// The code is another.
+    /// The code is wrong.
     Wrong,
-    /// The code is another, and was given too often: there is a new one, or none any more.
+    /// The code is wrong, and there were too many wrong ones: there is a new one, or none any more.
     Renewed,
-    /// No code is taken any more.
+    /// Codes are no longer accepted.
     Stopped,
 }
 
-/// The state of the door.
+/// State of the door.
 #[derive(Debug)]
 pub(crate) struct Gate {
     random: Random,
@@ -58,27 +59,27 @@ impl Gate {
         gate
     }
 
-    /// Whether this is the key of the link, which stays good: programs that show a preview of a link open it, too.
+    /// Whether this is the key of the link, which stays valid: programs that show a preview of a link open it, too.
     pub(crate) fn is_key(&self, key: &str) -> bool {
         is_same(&self.invitation.key, key)
     }
 
-    /// What lets the next browser in.
+    /// Returns the invitation of the next browser.
     pub(crate) fn invitation(&self) -> &Invitation {
         &self.invitation
     }
 
-    /// Whether a browser is in.
+    /// Whether a browser is admitted.
     pub(crate) fn knows(&self, cookie: &str) -> bool {
         self.browsers.iter().fold(false, |found, own| found | is_same(own, cookie))
     }
 
-    /// With the key of the link.
+    /// Admits a browser by the key of the link.
     pub(crate) fn by_key(&mut self, key: &str) -> Entry {
         if self.is_key(key) { self.enter() } else { Entry::Wrong }
     }
 
-    /// With the code; spaces and dashes in it are no matter.
+    /// Admits a browser by the code; spaces and dashes in it are ignored.
     pub(crate) fn by_code(&mut self, code: &str) -> Entry {
         let digits: String = code.chars().filter(|c| !matches!(c, ' ' | '-' | '+')).collect();
         let Some(own) = &self.invitation.code else { return Entry::Stopped };
@@ -113,42 +114,42 @@ impl Gate {
     }
 }
 
-/// 128 random bits as 32 hexadecimal digits.
+/// Returns 128 random bits as 32 hexadecimal digits.
 pub(crate) fn secret(random: Random) -> String {
     let mut bytes = [0; 16];
     random(&mut bytes);
     format!("{:032x}", u128::from_le_bytes(bytes))
 }
 
-/// Whether two secrets are the same, in a time that does not say where they differ.
+/// Whether two secrets are the same, in a time that does not depend on where they differ.
 pub(crate) fn is_same(own: &str, given: &str) -> bool {
     let differ = own.bytes().zip(given.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
     own.len() == given.len() && differ == 0
 }
 
-/// How often something may happen: so many at once, and so many a second after that.
+/// Rate limit: this many at once, and this many a second after that.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
     pub(crate) at_once: f64,
     pub(crate) per_second: f64,
 }
 
-/// What is left of a [`Pace`] at a moment.
+/// Remaining allowance of a [`Pace`] at a moment.
 #[derive(Clone, Copy, Debug)]
 struct Left {
     count: f64,
     at: Instant,
 }
 
-/// Counts what each peer does. Cost: bounded, however many peers there are.
+/// Counts the requests of each peer. Cost: bounded, however many peers there are.
 #[derive(Debug, Default)]
 pub(crate) struct Peers(BTreeMap<IpAddr, Left>);
 
 impl Peers {
-    /// Most peers that are told apart; when more come all begin anew.
+    /// Most peers that are counted separately; with more, all counts begin anew.
     const MOST: usize = 1024;
 
-    /// Whether a peer may do one more.
+    /// Whether a peer may make one more request.
     pub(crate) fn may(&mut self, peer: IpAddr, pace: Pace, now: Instant) -> bool {
         if self.0.len() >= Self::MOST && !self.0.contains_key(&peer) {
             self.0.clear();
@@ -168,7 +169,7 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicU64, Ordering};
 
-    /// Bytes that are never the same twice.
+    /// Returns bytes that are never the same twice.
     fn counted(bytes: &mut [u8]) {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         let n = NEXT.fetch_add(0x9E37_79B9_7F4A_7C15, Ordering::Relaxed);

@@ -11,39 +11,39 @@ use super::site::{Site, refusal};
 
 /// Longest request head in bytes.
 const MAX_HEAD: usize = 16 << 10;
-/// How often it is looked whether the time is up.
+/// Interval between two checks of the time limit.
 const GLANCE: Duration = Duration::from_millis(200);
 
-/// What all peers together may take.
+/// Limits for all peers together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Most connections at one time; one more ends the one that waits longest.
+    /// Most connections at one time; one more closes the one that has waited longest.
     connections: usize,
-    /// From the first byte to the last of both directions: a browser sends its head at once and takes a file of
+    /// Time from the first byte to the last of both directions: a browser sends its head at once and receives a file of
     /// megabytes in a fraction of this.
     patience: Duration,
 }
 
 impl Limits {
     pub(super) const USUAL: Self = Self { connections: 64, patience: Duration::from_secs(5) };
-    /// A wireless network takes longer.
+    /// Limits for a wireless network, which is slower.
     pub(super) const NETWORK: Self = Self { patience: Duration::from_secs(60), ..Self::USUAL };
 }
 
-/// Connections of one peer of the network: a page is some sixty files.
+/// Rate of connections of one peer of the network: a page is some sixty files.
 const CONNECTIONS: Pace = Pace { at_once: 300.0, per_second: 50.0 };
 
-/// A peer that is connected.
+/// A connected peer.
 struct Guest {
     id: u64,
     stream: TcpStream,
-    /// Its request was read: it is given an answer.
+    /// Whether its request was read, so that it is being answered.
     answered: bool,
-    /// When it came; once it is given an answer, when it last took some of it.
+    /// Time of its arrival; during the answer, the last time that it received some of it.
     since: Instant,
 }
 
-/// Everybody who is connected.
+/// All connected peers.
 #[derive(Default)]
 struct Guests(Mutex<(u64, Vec<Guest>)>);
 
@@ -52,15 +52,15 @@ impl Guests {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets one more in. Where it is full another is closed: first one that has asked for nothing yet, the oldest first,
-    /// then the one that has taken nothing of its answer for longest.
+    /// Admits one more. If it is full, another is closed: first one that has not sent a request yet, the oldest first,
+    /// then the one that has received nothing of its answer for longest.
     fn admit(&self, stream: TcpStream, most: usize) -> u64 {
         let mut all = self.all();
         let (next, open) = &mut *all;
         while open.len() >= most {
             let idle = (0..open.len()).min_by_key(|&k| (open[k].answered, open[k].since));
             let Some(idle) = idle else { break };
-            // Its thread sees the end of the stream and is done.
+            // Its thread sees the end of the stream and ends.
             let _ = open.swap_remove(idle).stream.shutdown(Shutdown::Both);
         }
         *next += 1;
@@ -68,7 +68,7 @@ impl Guests {
         *next
     }
 
-    /// Takes note that an answer is going out.
+    /// Notes that a part of an answer is being sent.
     fn takes(&self, id: u64) {
         if let Some(guest) = self.all().1.iter_mut().find(|g| g.id == id) {
             (guest.answered, guest.since) = (true, Instant::now());
@@ -80,7 +80,7 @@ impl Guests {
     }
 }
 
-/// Answers until the process ends.
+/// Answers requests until the process ends.
 pub(super) fn serve(listener: &TcpListener, site: &Site, limits: Limits) {
     let guests = Guests::default();
     let mut peers = Peers::default();
@@ -99,7 +99,7 @@ pub(super) fn serve(listener: &TcpListener, site: &Site, limits: Limits) {
             let id = guests.admit(other, limits.connections);
             let guests = &guests;
             let work = move || {
-                // A peer that went away or was too slow wants no answer.
+                // A peer that went away or was too slow gets no answer.
                 let _ = converse(stream, peer, site, Instant::now() + limits.patience, &|| guests.takes(id));
                 guests.leave(id);
             };
@@ -120,7 +120,7 @@ fn converse(
     stream.set_read_timeout(Some(GLANCE))?;
     stream.set_write_timeout(Some(GLANCE))?;
     let Some(network) = site.network() else {
-        // Only this machine is bound to; this holds even where a system forwards ports.
+        // Only this machine is bound to; the test holds even where a system forwards ports.
         if peer.is_loopback() {
             talk(&mut stream, peer, site, end, takes)?;
         }
@@ -147,7 +147,7 @@ fn converse(
 /// The first byte of a TLS connection.
 const TLS_HANDSHAKE: [u8; 1] = [0x16];
 
-/// One request and its answer.
+/// Handles one request and its answer.
 fn talk(
     stream: &mut (impl Read + Write),
     peer: IpAddr,
@@ -166,7 +166,7 @@ fn talk(
     send(stream, &answer, end, takes)
 }
 
-/// The bytes after a head, of which some came with it.
+/// Reads the bytes after a head, some of which came with it.
 fn body(stream: &mut impl Read, mut body: Vec<u8>, length: usize, end: Instant) -> std::io::Result<Vec<u8>> {
     body.truncate(length);
     let mut chunk = vec![0; (1 << 16).min(length)];
@@ -182,7 +182,7 @@ fn body(stream: &mut impl Read, mut body: Vec<u8>, length: usize, end: Instant) 
     Ok(body)
 }
 
-/// Whether to go on after an error of a stream with timeouts.
+/// Whether to continue after an error of a stream with timeouts.
 fn later(e: std::io::Error, end: Instant) -> std::io::Result<()> {
     let waits = matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted);
     if waits && Instant::now() < end { Ok(()) } else { Err(e) }
@@ -190,7 +190,7 @@ fn later(e: std::io::Error, end: Instant) -> std::io::Result<()> {
 
 #[derive(Debug, PartialEq, Eq)]
 enum Head {
-    /// The bytes before the empty line, and those that came after it.
+    /// The bytes before the empty line, and those after it.
     Whole(Vec<u8>, Vec<u8>),
     /// No empty line within [`MAX_HEAD`].
     TooLong(Vec<u8>),
@@ -242,7 +242,7 @@ fn send(stream: &mut impl Write, answer: &Answer, end: Instant, takes: &dyn Fn()
             }
         }
     }
-    // What TLS still holds.
+    // Sends what TLS still holds.
     while let Err(e) = stream.flush() {
         later(e, end)?;
     }
@@ -270,7 +270,7 @@ mod tests {
         assert!(head(&mut &b"GET / HTTP/1.1\r\n\r\n"[..], Instant::now()).is_err(), "the time is up");
     }
 
-    /// A Studio of one small page and one file of 8 MB on a port of its own, served until the tests end.
+    /// Serves a Studio of one small page and one file of 8 MB on a port of its own until the tests end.
     fn studio(test: &str, limits: Limits) -> SocketAddr {
         let folder: PathBuf =
             std::env::temp_dir().join(format!("burgeon-http-{test}-{}", std::process::id()));
@@ -298,7 +298,7 @@ mod tests {
         all
     }
 
-    /// How long it takes until the other side ends a connection, whatever it sends before.
+    /// Returns the time until the other side ends a connection, whatever it sends before.
     fn ended(mut stream: TcpStream, from: Instant) -> Duration {
         stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
         let mut sink = [0; 1 << 16];
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn a_browser_is_served_while_a_hundred_peers_wait() {
         let address = studio("many", Limits::USUAL);
-        // Some say nothing, some a part of a request, some ask for much and take nothing of it.
+        // Some send nothing, some a part of a request, some request much and receive nothing of it.
         let idle: Vec<TcpStream> = (0..100)
             .map(|k| match k % 3 {
                 0 => TcpStream::connect(address).unwrap(),
@@ -347,7 +347,7 @@ mod tests {
             }
             from.elapsed()
         });
-        // Nothing was taken of the answer until its time was up: the rest is not sent.
+        // Nothing of the answer was received before its time was up: the rest is not sent.
         std::thread::sleep(Duration::from_millis(1800));
         let mut got = Vec::new();
         let _ = (&greedy).read_to_end(&mut got);
@@ -356,7 +356,7 @@ mod tests {
         assert!(dripped.join().unwrap() < Duration::from_secs(4));
     }
 
-    /// A client of the network: whom it speaks to is no matter here.
+    /// A client of the network, which does not verify the server.
     mod network {
         use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
         use std::path::PathBuf;
@@ -410,7 +410,7 @@ mod tests {
             }
         }
 
-        /// What the terminal showed, of all servers of these tests.
+        /// Invitations that the terminal showed, of all servers of these tests.
         static SHOWN: Mutex<Vec<(String, Invitation)>> = Mutex::new(Vec::new());
 
         fn shown(host: &str, invitation: &Invitation) {
@@ -454,7 +454,7 @@ mod tests {
                 Self { address, client: Arc::new(client), project, fingerprint }
             }
 
-            /// What the terminal shows now.
+            /// Returns the invitation that the terminal shows now.
             fn invitation(&self) -> Invitation {
                 let host = self.address.to_string();
                 let all = SHOWN.lock().unwrap();
@@ -493,7 +493,7 @@ mod tests {
                 )
             }
 
-            /// What a browser keeps that comes in by the link.
+            /// Returns the cookie of a browser that enters by the link.
             fn enter(&self) -> String {
                 let key = format!("key={}", self.invitation().key);
                 let answer = self.ask("POST /enter", "", key.as_bytes());
@@ -557,7 +557,7 @@ mod tests {
             let other =
                 format!("GET / HTTP/1.1\r\nHost: {own}\r\nOrigin: https://evil.example\r\n{cookie}\r\n");
             assert!(served.send(&other, b"").starts_with("HTTP/1.1 403"));
-            // Without TLS nothing but what to do.
+            // Without TLS, the answer only says what to do.
             let mut plain = TcpStream::connect(own).unwrap();
             plain.write_all(format!("GET / HTTP/1.1\r\nHost: {own}\r\n{cookie}\r\n").as_bytes()).unwrap();
             let mut all = String::new();
@@ -580,11 +580,11 @@ mod tests {
             let saved = put(&known(&first), &other);
             assert!(saved.starts_with("HTTP/1.1 204"), "{saved}");
             assert_eq!(std::fs::read(&served.project).unwrap(), other);
-            // What was known before is not the file any more, until it is read again.
+            // The version known before is outdated, until the file is read again.
             other = document_of("a third name");
             assert!(put(&known(&first), &other).starts_with("HTTP/1.1 412"));
             assert!(put(&known(&etag(&saved)), &other).starts_with("HTTP/1.1 204"));
-            // The desktop wrote meanwhile: that is kept.
+            // The desktop wrote meanwhile: its version is kept.
             let desktop = document_of("the desktop's");
             std::fs::write(&served.project, &desktop).unwrap();
             assert!(put(&known(&first), &other).starts_with("HTTP/1.1 412"));
@@ -600,7 +600,7 @@ mod tests {
             let served = Served::new("looked");
             let key = served.invitation().key;
             let link = format!("/?key={key}");
-            // Programs that show a preview ask for the head, then for the page, as often as they like.
+            // Programs that show a preview request the head, then the page, as often as they like.
             for _ in 0..5 {
                 let head = served.ask(&format!("HEAD {link}"), "", b"");
                 assert!(head.starts_with("HTTP/1.1 401") && head.ends_with("\r\n\r\n"), "{head}");
@@ -619,7 +619,7 @@ mod tests {
             let cookie = served.enter();
             assert!(served.ask("GET /", &cookie, b"").ends_with("page"));
             assert!(served.ask(&format!("GET {link}"), "", b"").contains("used already"));
-            // Who is in and opens the next link uses nothing up.
+            // A browser that is admitted and opens the next link uses nothing up.
             let next = served.invitation().key;
             assert!(served.ask(&format!("GET /?key={next}"), &cookie, b"").ends_with("page"));
             let pressed = served.ask("POST /enter", &cookie, format!("key={next}").as_bytes());
@@ -664,7 +664,7 @@ mod tests {
                 assert!(saved.starts_with("HTTP/1.1 204"), "{saved}");
                 assert_eq!(rights(), mode, "{mode:o}");
             }
-            // Nor is a file replaced that is not to be written.
+            // Nor is a read-only file replaced.
             set(0o400);
             let before = std::fs::read(&served.project).unwrap();
             let saved = served.ask(&format!("PUT {path}"), &known(), &document_of("not this"));
@@ -695,10 +695,10 @@ mod tests {
                     .collect();
                 many.into_iter().map(|t| t.join().unwrap()).sum::<usize>()
             });
-            // So many at once, and ten a second after that.
+            // The burst allowed, and ten a second after that.
             let most = 61.0 + 10.0 * from.elapsed().as_secs_f64();
             assert!((answered as f64) < most, "{answered} of 1000 were answered");
-            // As soon as there is room for one more of this peer.
+            // When there is room for one more of this peer.
             std::thread::sleep(Duration::from_secs(1));
             assert!(served.ask("GET /", &cookie, b"").ends_with("page"), "after {:?}", from.elapsed());
         }

@@ -1,4 +1,4 @@
-//! A door to the network, for headsets: TLS with a certificate that is made on the spot, a link, a code, a QR code.
+//! The door to the network, for headsets: TLS with a certificate that is made on the spot, a link, a code, a QR code.
 
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::sync::Arc;
@@ -17,18 +17,18 @@ use super::gate::{Invitation, MOST_WRONG, Random};
 use crate::failure::{Failure, Outcome};
 use crate::say;
 
-/// How long a certificate is good for; a server that runs longer is started anew.
+/// Validity of a certificate; a server that runs longer has to be restarted.
 const GOOD_FOR: Duration = Duration::from_secs(30 * 24 * 60 * 60);
-/// Clocks of headsets are not exact.
+/// Backdating of a certificate, because clocks of headsets are not exact.
 const SINCE: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// The address by which the network knows this machine: the one that is named, else the one that the way out has.
+/// Returns the address by which the network knows this machine: the given one, else that of outgoing connections.
 pub(super) fn address(named: &str) -> Outcome<IpAddr> {
     if !named.is_empty() {
         let wrong = |_| Failure::Bad(format!("--lan={named}: not an address such as 192.168.1.20"));
         return named.parse().map_err(wrong);
     }
-    // Nothing is sent: the system only looks which way it would go. The address is one kept for documentation.
+    // Nothing is sent: the system only chooses a route. The address is one reserved for documentation.
     let way = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).and_then(|s| {
         s.connect((Ipv4Addr::new(192, 0, 2, 1), 9))?;
         s.local_addr()
@@ -41,7 +41,7 @@ pub(super) fn address(named: &str) -> Outcome<IpAddr> {
     }
 }
 
-/// Random bytes of the system. A system without them has no secrets: then nothing is served.
+/// Fills bytes with random numbers of the system. A system without them has no secrets: then nothing is served.
 pub(super) const RANDOM: Random = |bytes| {
     if provider().secure_random.fill(bytes).is_err() {
         say::error("the system gives no random numbers, without which the Studio is not served");
@@ -65,7 +65,7 @@ fn fingerprint_of(certificate: &[u8]) -> String {
     Sha256::digest(certificate).iter().map(|b| format!("{b:02X}")).collect::<Vec<_>>().join(":")
 }
 
-/// An identity that is made on the spot.
+/// Makes a new identity.
 pub(super) fn identity(address: IpAddr) -> Outcome<Identity> {
     let fault = |what: &str| Failure::Bad(format!("no certificate could be made: {what}"));
     let key = KeyPair::generate().map_err(|e| fault(&e.to_string()))?;
@@ -86,7 +86,7 @@ pub(super) fn identity(address: IpAddr) -> Outcome<Identity> {
     Ok(Identity { tls: Arc::new(config), fingerprint: fingerprint_of(certificate.der()) })
 }
 
-/// Says how the next browser comes in.
+/// Prints how the next browser can enter.
 pub(super) fn invite(host: &str, invitation: &Invitation) {
     invited(host, invitation).iter().for_each(|line| say::line(line));
 }
@@ -122,7 +122,7 @@ mod tests {
     fn an_address_is_taken_as_it_is_named_and_nothing_else() {
         assert_eq!(address("192.168.1.20").unwrap(), IpAddr::from([192, 168, 1, 20]));
         assert!(address("my-desk").is_err() && address("192.168.1.20:80").is_err());
-        // In a machine without a network this says what to do.
+        // On a machine without a network, the error gives the remedy.
         match address("") {
             Ok(own) => assert!(!own.is_loopback() && !own.is_unspecified()),
             Err(e) => assert!(format!("{e:?}").contains("--lan=")),

@@ -1,4 +1,4 @@
-//! The key of a link on this machine: whoever has it gets the file that was opened, and no other user of the machine.
+//! The key of a link on this machine: whoever has it gets the opened file, and no other user of the machine.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::gate::{Random, is_same, secret};
 
-/// A key that is good as long as the server runs; a browser that comes with it keeps it as a cookie.
+/// A key that is valid as long as the server runs; a browser that comes with it keeps it as a cookie.
 #[derive(Debug)]
 pub(crate) struct LocalKey {
     key: String,
@@ -19,7 +19,7 @@ impl LocalKey {
         Self { key: secret(random), opener: Mutex::default() }
     }
 
-    /// The key itself, for the link and the cookie.
+    /// Returns the key itself, for the link and the cookie.
     pub(crate) fn key(&self) -> &str {
         &self.key
     }
@@ -28,7 +28,7 @@ impl LocalKey {
         is_same(&self.key, given)
     }
 
-    /// A page that leads a browser to the link, until the first one comes.
+    /// Makes a page that leads a browser to the link, until the first one comes.
     pub(crate) fn lead_to(&self, link: &str) -> io::Result<PathBuf> {
         let opener = Opener::new(&std::env::temp_dir(), &self.key, link)?;
         let path = opener.0.clone();
@@ -36,20 +36,20 @@ impl LocalKey {
         Ok(path)
     }
 
-    /// A browser came: the page that led it here is removed.
+    /// Removes the page after a browser has come by it.
     pub(crate) fn arrived(&self) {
         self.opener.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
 }
 
-/// A page that leads to a link, which only its owner may read. A program's arguments are seen by every user of a machine:
+/// A page that leads to a link and that only its owner may read. Every user of a machine sees a program's arguments, so
 /// a browser is given the name of this file instead of the link.
 #[derive(Debug)]
 struct Opener(PathBuf);
 
 impl Opener {
     fn new(folder: &Path, key: &str, link: &str) -> io::Result<Self> {
-        // Not the key: the name is seen by everybody. What it is the hash of cannot be told from it.
+        // Not the key: everybody sees the name. The key cannot be found from its hash.
         let name: String = {
             use sha2::{Digest as _, Sha256};
             Sha256::digest(key).iter().take(8).map(|b| format!("{b:02x}")).collect()
@@ -64,7 +64,7 @@ impl Opener {
         }
         let mut file = options.open(&path)?;
         let opener = Self(path);
-        // A link is made of what needs no escape in HTML but `&`.
+        // Of the characters of a link, only `&` needs an escape in HTML.
         let link = link.replace('&', "&amp;");
         writeln!(
             file,

@@ -1,5 +1,5 @@
-//! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else; with `--lan` to browsers of the
-//! network that were let in.
+//! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else; with `--lan` to admitted
+//! browsers of the network.
 
 mod answer;
 mod door;
@@ -23,12 +23,12 @@ use gate::Gate;
 use local::LocalKey;
 use site::{Files, Network, Page, Site};
 
-/// The page as it was when the program was built; empty where it had not been built then.
+/// The page as it was when the program was built; empty if it had not been built then.
 const PAGE: Files = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// The port that is tried first. The browser keeps drawings by address: another port, another drawer.
+/// Port that is tried first. The browser stores drawings by address: another port has another store.
 const PORT: u16 = 7734;
-/// How many ports after it are tried before any free one is taken.
+/// Number of ports after it that are tried before any free one is used.
 const NEXT: u16 = 8;
 
 pub(crate) fn studio(args: &StudioArgs) -> Outcome {
@@ -67,10 +67,10 @@ pub(crate) fn studio(args: &StudioArgs) -> Outcome {
     Ok(())
 }
 
-/// What is said where no browser is started.
+/// Message where no browser is started.
 const NO_BROWSER: &str = "No browser could be opened: open the address yourself.";
 
-/// Opens an address or a page in a browser, or says that there is none.
+/// Opens an address or a page in a browser, or reports that there is none.
 fn open_or_say(what: &OsStr) {
     if !open_browser(what) {
         say::line(NO_BROWSER);
@@ -109,13 +109,13 @@ fn serve_network(listener: &TcpListener, address: IpAddr, site: Site, opened: Op
     Ok(())
 }
 
-/// The file to open must be one that is read; the page then says what is wrong inside.
+/// Checks that the file to open is one that can be read; the page then reports faults inside.
 fn checked(path: &Path) -> Outcome<PathBuf> {
     match files::open(path)?.1 {
         Kind::Drawing(_) | Kind::Model(_) | Kind::Project => {
             path.canonicalize().map_err(|e| Failure::io(path, "read", &e))
         }
-        Kind::Structure(format) => Err(Failure::at(
+        Kind::Structure(format) => Err(Failure::bad_file(
             path,
             format_args!(
                 "is the structure of a plant ({}), which the Studio does not read; `burgeon shape` makes a model of it",
@@ -135,13 +135,16 @@ fn listen(address: IpAddr, asked: Option<u16>) -> Outcome<TcpListener> {
     found.ok_or_else(|| Failure::Bad(format!("no port of {address} can be used")))
 }
 
-/// The page that is served: of the folder that is named, else the one in the program.
+/// Returns the page that is served: of the given folder, else the one in the program.
 fn page(folder: Option<&Path>, inside: Files) -> Outcome<Page> {
     if let Some(folder) = folder {
         return if folder.join("index.html").is_file() {
             Ok(Page::Folder(folder.into()))
         } else {
-            Err(Failure::at(folder, "holds no index.html; build the Studio with `cargo xtask build-web`"))
+            Err(Failure::bad_file(
+                folder,
+                "holds no index.html; build the Studio with `cargo xtask build-web`",
+            ))
         };
     }
     if inside.is_empty() {
@@ -182,7 +185,7 @@ mod tests {
         assert!(why(None, &[]).contains("cargo xtask build-web"));
         let inside: Files = &[("index.html", b"page")];
         assert!(matches!(page(None, inside), Ok(Page::Inside(_))));
-        // A folder that is named counts, even if it holds nothing.
+        // A given folder counts, even if it holds nothing.
         assert!(why(Some(Path::new("no such folder")), inside).contains("index.html"));
     }
 

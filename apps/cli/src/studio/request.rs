@@ -1,31 +1,31 @@
-//! What a request asks for, and whether it may: a pure function of its head, tested and fuzzed without a network.
+//! Meaning of a request, and whether it is allowed: a pure function of its head, tested and fuzzed without a network.
 //!
-//! `bytes of the head, our own addresses -> what is asked for | why it is refused`
+//! `bytes of the head, our own addresses -> the request | reason why it is refused`
 //!
-//! Uses nothing but the standard library: the fuzz target `request` takes this file as it is.
+//! It uses nothing but the standard library: the fuzz target `request` includes this file unchanged.
 
-/// Why a file is not given.
+/// Reason why a file is not given.
 pub(crate) const NO_FILE: &str = "there is no such file";
 
-/// What may be asked for.
+/// Target of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
     /// A file below the folder: parts of letters, digits, `.`, `-` and `_` between single slashes, none with a dot first.
     File(String),
-    /// The file that the Studio was opened with, by its name.
+    /// The file with which the Studio was opened, by its name.
     Opened(String),
-    /// The door at which a code or a key is given; of a server of the network only.
+    /// The door at which a code or a key is given; only of a server of the network.
     Door,
 }
 
-/// What is done with it.
+/// Operation on the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Method {
     /// GET or HEAD.
     Read,
     /// POST, at the door: a code, or the key of a link.
     Enter,
-    /// PUT, of the file that was opened.
+    /// PUT, of the opened file.
     Save,
 }
 
@@ -34,35 +34,35 @@ pub(crate) enum Method {
 pub(crate) struct Asked {
     pub(crate) method: Method,
     pub(crate) target: Target,
-    /// Bytes that follow the head.
+    /// Number of bytes that follow the head.
     pub(crate) length: usize,
-    /// What the browser was given when it came in.
+    /// Cookie that the browser got when it entered.
     pub(crate) cookie: Option<String>,
     /// The key of a link.
     pub(crate) key: Option<String>,
-    /// The version of the file that is to be replaced.
+    /// Version of the file that is to be replaced.
     pub(crate) known: Option<String>,
-    /// Whether the browser unpacks what Brotli packed.
+    /// Whether the browser accepts Brotli.
     pub(crate) unpacks: bool,
 }
 
-/// What a server answers to.
+/// Addresses to which a server answers.
 #[derive(Clone, Debug)]
 pub(crate) struct Addresses {
     /// `http` of this machine alone, `https` of its network.
     pub(crate) scheme: &'static str,
     /// Our own hosts, with the port.
     pub(crate) hosts: Vec<String>,
-    /// Most bytes that are taken in; 0 for a server that takes nothing.
+    /// Most bytes that are accepted; 0 for a server that accepts none.
     pub(crate) takes: usize,
-    /// The name under which a browser keeps that it came in: of a port, as browsers tell cookies apart by host only.
+    /// Name of the cookie of an admitted browser: it contains the port, as browsers distinguish cookies by host only.
     pub(crate) cookie: String,
 }
 
-/// Longest code or key with its name that is given at the door.
+/// Longest code or key with its name at the door, bytes.
 const DOOR_BYTES: usize = 64;
 
-/// What a request with this head (up to and without the empty line) asks for.
+/// Parses a request with this head (up to and without the empty line).
 ///
 /// # Errors
 /// The status and the words of the refusal.
@@ -105,7 +105,7 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
             return Err((400, "a header is given twice"));
         }
     }
-    // Another name for this address would let a foreign page speak to us (DNS rebinding).
+    // Another name for this address would let a foreign page send requests to us (DNS rebinding).
     let ours = |h: &str| own.hosts.iter().any(|own| own == h);
     if !host.is_some_and(ours) {
         return Err((421, "this is the Studio of another address"));
@@ -120,7 +120,7 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
     let (method, most) = match (method, &target_is) {
         ("GET" | "HEAD", _) => (Method::Read, 0),
         ("POST", Some(Target::Door)) => (Method::Enter, DOOR_BYTES),
-        // A change comes from our own page, which says so.
+        // A change must come from our own page, as its origin shows.
         ("PUT", Some(Target::Opened(_))) if own.takes > 0 && origin.is_some() => (Method::Save, own.takes),
         _ => return Err((405, "files are only read here")),
     };
@@ -138,7 +138,7 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
     Ok(Asked { method, target: target_is, length, cookie, key, known: known.map(str::to_owned), unpacks })
 }
 
-/// Whether Brotli is among these encodings, and not with a weight of nothing (RFC 9110, 12.5.3).
+/// Whether Brotli is among these encodings with a weight above 0 (RFC 9110, 12.5.3).
 fn takes_brotli(encodings: &str) -> bool {
     encodings.split(',').any(|one| {
         let (name, weight) = one.split_once(';').unwrap_or((one, "q=1"));
@@ -147,7 +147,7 @@ fn takes_brotli(encodings: &str) -> bool {
     })
 }
 
-/// What a target names.
+/// Parses a target.
 fn target_of(target: &str, door: bool) -> Option<Target> {
     let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
     let path = unescaped(path)?;
@@ -166,7 +166,7 @@ fn target_of(target: &str, door: bool) -> Option<Target> {
     path.split('/').all(plain).then(|| Target::File(path.into()))
 }
 
-/// Percent escapes to text; `None` for broken ones, for what is no UTF-8 and for control characters.
+/// Decodes percent escapes; `None` for broken ones, for text that is not UTF-8 and for control characters.
 pub(crate) fn unescaped(text: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
@@ -193,7 +193,7 @@ mod tests {
         Addresses { scheme: "http", hosts, takes: 0, cookie: "burgeon-7734".into() }
     }
 
-    /// What must hold of any head that is not refused, told by reading it in another way.
+    /// Checks properties of any accepted head, found by reading it in a different way.
     fn sound(head: &[u8]) {
         let Ok(Asked { target, method, length, .. }) = asked(head, &hosts()) else { return };
         assert!(method == Method::Read && length == 0 && target != Target::Door);
@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Requests that are nearly right.
+    /// Generates requests that are nearly right.
     fn nearly() -> impl Strategy<Value = Vec<u8>> {
         let method = prop_oneof![4 => Just("GET"), 1 => Just("HEAD"), 1 => Just("POST"), 1 => Just("get"), 1 => Just("")];
         let target = "(/|\\.\\.|\\.|%2e|%2f|%5c|\\\\|%00|\\.js|assets|opened|index|[a-z%?#])*";

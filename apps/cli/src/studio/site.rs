@@ -1,6 +1,5 @@
-//! What is answered to a request: the files of the page, and the file that the Studio was opened with, which is given only to
-//! browsers that have the key. To the network everything only to browsers that came in, and a project that was opened is
-//! written back.
+//! Answers to requests: the files of the page, and the opened file, which only browsers with the key get. On the
+//! network, only admitted browsers get anything, and a project that was opened is written back.
 //!
 //! `request -> the file, if it is one of the page -> status, headers, bytes`
 
@@ -24,7 +23,7 @@ use crate::draft::Draft;
 use crate::failure::{Failure, Outcome};
 use crate::placing::{Move, put_all};
 
-/// Nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
+/// Allows nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
 pub(crate) const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; \
     style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; manifest-src 'self'; base-uri 'none'; \
     form-action 'none'; frame-ancestors 'none'";
@@ -43,20 +42,21 @@ const TYPES: [(&str, &str); 8] = [
 /// Files by their names in addresses.
 pub(crate) type Files = &'static [(&'static str, &'static [u8])];
 
-/// Where the files of the page are.
+/// Place of the files of the page.
 #[derive(Debug)]
 pub(crate) enum Page {
-    /// In this folder, as they are when they are asked for.
+    /// In this folder, read at each request.
     Folder(PathBuf),
     /// In the program.
     Inside(Files),
 }
 
-/// What strangers may ask for, and how often codes may be tried.
+/// Rate of requests from strangers.
 const STRANGERS: Pace = Pace { at_once: 60.0, per_second: 10.0 };
+/// Rate of attempts to enter a code.
 const TRIES: Pace = Pace { at_once: 5.0, per_second: 0.5 };
 
-/// What is said of a key that is not the one of the link.
+/// Message about a key that is not the one of the link.
 const USED_UP: &str =
     "This link was used already, or is another one. Take the one that the terminal shows now.";
 
@@ -66,19 +66,19 @@ pub(crate) struct Site {
     page: Page,
     own: Addresses,
     opened: Option<PathBuf>,
-    /// For whom the file is that was opened, where the page is served to this machine.
+    /// Key that the opened file requires, where the page is served to this machine.
     local: Option<LocalKey>,
     network: Option<Network>,
 }
 
-/// What a server of the network has besides.
+/// Additional state of a server of the network.
 #[derive(Debug)]
 pub(crate) struct Network {
     pub(crate) identity: Identity,
     door: Mutex<Door>,
-    /// One change of the file at a time.
+    /// Lock that allows one change of the file at a time.
     writing: Mutex<()>,
-    /// Says how the next browser comes in.
+    /// Prints how the next browser can enter.
     invite: fn(&str, &Invitation),
 }
 
@@ -90,7 +90,7 @@ struct Door {
 }
 
 impl Door {
-    /// What a stranger without a link is asked for.
+    /// Returns the request to a stranger without a link.
     fn asks(&self) -> Asks<'static> {
         if self.gate.invitation().code.is_some() { Asks::Code } else { Asks::Link }
     }
@@ -120,12 +120,13 @@ impl Site {
         Ok(Self { page, own, opened, local: None, network: None })
     }
 
-    /// The same page, whose opened file is for browsers of this machine that have the key; without one it is for nobody.
+    /// Returns the same page, whose opened file is for browsers of this machine that have the key; without one nobody
+    /// gets it.
     pub(crate) fn locked_by(self, local: LocalKey) -> Self {
         Self { local: Some(local), ..self }
     }
 
-    /// The same page for the network, under this host and no other.
+    /// Returns the same page for the network, under this host and no other.
     pub(crate) fn in_network(self, host: String, network: Network) -> Self {
         let own = Addresses { scheme: "https", hosts: vec![host], takes: MAX_PROJECT_BYTES, ..self.own };
         Self { own, network: Some(network), ..self }
@@ -135,14 +136,14 @@ impl Site {
         self.network.as_ref()
     }
 
-    /// Says how the next browser comes in.
+    /// Prints how the next browser can enter.
     pub(crate) fn invite(&self) {
         if let Some(network) = &self.network {
             (network.invite)(&self.own.hosts[0], network.door().gate.invitation());
         }
     }
 
-    /// What a request with this head asks for, or the answer that refuses it before its body is read.
+    /// Parses a request with this head, or returns the answer that refuses it before its body is read.
     pub(crate) fn asked(&self, head: &[u8], peer: IpAddr) -> Result<Asked, Answer> {
         let asked = asked(head, &self.own).map_err(|(status, why)| refusal(status, why).to(head))?;
         let instead = match &self.network {
@@ -152,7 +153,7 @@ impl Site {
         instead.map_or(Ok(asked), |answer| Err(answer.to(head)))
     }
 
-    /// The answer to a request that may be answered, whose body was read.
+    /// Returns the answer to an allowed request whose body was read.
     pub(crate) fn answer(&self, head: &[u8], asked: &Asked, body: &[u8], peer: IpAddr) -> Answer {
         let answer = match asked.method {
             Method::Enter => self.enter(asked, body, peer),
@@ -162,21 +163,21 @@ impl Site {
         answer.to(head)
     }
 
-    /// What is told to a browser of this machine that wants the file and has not its key, or comes with the key; nothing
-    /// to others, as the page itself is no secret.
+    /// Returns an answer to a browser of this machine that requests the file without its key, or comes with the key;
+    /// `None` for others, as the page itself is no secret.
     fn unlock(&self, asked: &Asked) -> Option<Answer> {
         let has = |given: Option<&str>| self.local.as_ref().filter(|l| given.is_some_and(|g| l.is_key(g)));
         if matches!(asked.target, Target::Opened(_)) {
             return has(asked.cookie.as_deref()).is_none().then(locked);
         }
-        // Where nothing was opened a key opens nothing.
+        // If no file was opened, a key opens nothing.
         asked.key.as_deref().filter(|_| self.opened.is_some())?;
         let Some(local) = has(asked.key.as_deref()) else { return Some(locked()) };
         local.arrived();
         Some(self.admitted(&format!("{}; Path=/; HttpOnly; SameSite=Strict", local.key())))
     }
 
-    /// What a stranger of the network is told; nothing to a browser that is in.
+    /// Returns the answer to a stranger of the network; `None` for an admitted browser.
     fn admit(&self, network: &Network, asked: &Asked, peer: IpAddr) -> Option<Answer> {
         let mut door = network.door();
         if asked.cookie.as_deref().is_some_and(|c| door.gate.knows(c)) {
@@ -204,11 +205,11 @@ impl Site {
         }
     }
 
-    /// The answer to a code, or to the key of a link.
+    /// Returns the answer to a code, or to the key of a link.
     fn enter(&self, asked: &Asked, body: &[u8], peer: IpAddr) -> Answer {
         let Some(network) = &self.network else { return refusal(404, NO_FILE) };
         let mut door = network.door();
-        // Who is in already and presses the button of another link leaves that to the next browser.
+        // An admitted browser that presses the button of another link leaves that link to the next browser.
         if asked.cookie.as_deref().is_some_and(|c| door.gate.knows(c)) {
             drop(door);
             return self.redirected("");
@@ -243,25 +244,25 @@ impl Site {
         }
     }
 
-    /// A browser is in: it keeps a cookie and goes to the page.
+    /// Admits a browser: it gets a cookie and is sent to the page.
     fn welcome(&self, cookie: &str, peer: IpAddr) -> Answer {
         crate::say::line(&format!("A browser at {peer} is in."));
         self.invite();
         self.admitted(&format!("{cookie}; Path=/; Secure; HttpOnly; SameSite=Lax"))
     }
 
-    /// The path and the query of the page with the file that was opened.
+    /// Returns the path and the query of the page with the opened file.
     pub(crate) fn start(&self) -> String {
         let open = self.opened.as_deref().and_then(Path::file_name);
         open.map_or("/".into(), |name| format!("/?open=opened%2F{}", escaped(&name.to_string_lossy())))
     }
 
-    /// Has a browser keep a cookie and go to the page.
+    /// Gives a browser a cookie and sends it to the page.
     fn admitted(&self, cookie: &str) -> Answer {
         self.redirected(&format!("Set-Cookie: {}={cookie}\r\n", self.own.cookie))
     }
 
-    /// Has a browser go to the page.
+    /// Sends a browser to the page.
     fn redirected(&self, more: &str) -> Answer {
         let head = format!(
             "HTTP/1.1 303 In\r\nLocation: {}\r\n{more}Content-Length: 0\r\nCache-Control: no-store\r\n\
@@ -271,12 +272,12 @@ impl Site {
         Answer { status: 303, head, body: Cow::default() }
     }
 
-    /// The file that was opened, if it has that name.
+    /// Returns the opened file, if it has that name.
     fn is_opened(&self, name: &str) -> Option<&Path> {
         self.opened.as_deref().filter(|o| o.file_name().is_some_and(|n| n == name))
     }
 
-    /// Writes the project that was opened anew: whole or not at all, and only over the version that the browser knows.
+    /// Rewrites the opened project: whole or not at all, and only over the version that the browser knows.
     fn save(&self, asked: &Asked, body: &[u8]) -> Answer {
         let Target::Opened(name) = &asked.target else { return refusal(404, NO_FILE) };
         let (Some(network), Some(path)) = (&self.network, self.is_opened(name).filter(|p| is_project(p)))
@@ -290,7 +291,7 @@ impl Site {
         let now = std::fs::read(path).map_or(String::new(), |bytes| version(&bytes));
         if asked.known.as_ref() != Some(&now) {
             let mut answer = refusal(412, "the file was changed by another program since it was opened here");
-            // A page that was closed while it wrote knows its own work by this.
+            // A page that was closed during the write recognises its own work by this.
             answer.head = answer.head.replace("Cache-Control:", &format!("ETag: {now}\r\nCache-Control:"));
             return answer;
         }
@@ -308,13 +309,13 @@ impl Site {
 
     fn file(&self, asked: &Asked) -> Option<Answer> {
         match &asked.target {
-            // To a stranger the door was shown already.
+            // A stranger has already got the door.
             Target::Door => Some(self.redirected("")),
             Target::Opened(name) => {
                 let path = self.is_opened(name)?;
                 let bytes = std::fs::read(path).ok()?;
                 let mut answer = given("application/octet-stream", false, Cow::default());
-                // Only a version that is known can be replaced.
+                // Only a known version can be replaced.
                 let version = (self.network.is_some() && is_project(path)).then(|| version(&bytes));
                 let more = version.map_or(String::new(), |v| format!("ETag: {v}\r\n"));
                 answer.head = answer
@@ -325,7 +326,7 @@ impl Site {
             Target::File(path) => {
                 let extension = Path::new(path).extension()?.to_str()?;
                 let kind = TYPES.iter().find(|t| t.0 == extension)?.1;
-                // Built files bear their content in their name.
+                // The names of built files contain a digest of their content.
                 let forever = path.starts_with("assets/");
                 let packed = self.bytes(&format!("{path}{PACKED}"));
                 let Some(packed) = packed else { return Some(given(kind, forever, self.bytes(path)?)) };
@@ -341,7 +342,7 @@ impl Site {
         }
     }
 
-    /// A file of the page; nothing outside its folder, whatever links lie in it.
+    /// Returns a file of the page; nothing outside its folder, whatever links lie in it.
     fn bytes(&self, path: &str) -> Option<Cow<'static, [u8]>> {
         match &self.page {
             Page::Inside(files) => files.iter().find(|f| f.0 == path).map(|f| Cow::Borrowed(f.1)),
@@ -354,7 +355,7 @@ impl Site {
     }
 }
 
-/// Ends the name of a file of the page that Brotli packed.
+/// Ending of the name of a file of the page that Brotli packed.
 const PACKED: &str = ".br";
 
 fn unpacked(mut packed: &[u8]) -> Option<Vec<u8>> {
@@ -377,20 +378,20 @@ fn is_project(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("burgeon"))
 }
 
-/// What a browser knows a file by: the SHA-256 of its bytes.
+/// Returns the version by which a browser identifies a file: the SHA-256 of its bytes.
 fn version(bytes: &[u8]) -> String {
     let digits: String = Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect();
     format!("\"{digits}\"")
 }
 
-/// Puts these bytes in the place of a file, whole or not at all; who may read and write it stays as it was.
+/// Replaces a file by these bytes, whole or not at all, and keeps its permissions.
 fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let rights = std::fs::metadata(path)?.permissions();
     if rights.readonly() {
         return Err(std::io::ErrorKind::PermissionDenied.into());
     }
     let (draft, mut file) = Draft::create(path.parent().unwrap_or(Path::new(".")))?;
-    // Before there is anything in it to be read.
+    // Set before there is any content to read.
     file.file().set_permissions(rights)?;
     file.write_all(bytes)?;
     file.sync()?;
@@ -398,7 +399,7 @@ fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     put_all(&[Move { draft, place: path.to_path_buf() }]).map_err(|refused| refused.error)
 }
 
-/// An answer that gives nothing but a reason.
+/// Returns an answer that contains only a reason.
 pub(crate) fn refusal(status: u16, why: &str) -> Answer {
     let body = format!("{why}\n").into_bytes();
     let allow = if status == 405 { "Allow: GET, HEAD\r\n" } else { "" };
@@ -410,7 +411,7 @@ pub(crate) fn refusal(status: u16, why: &str) -> Answer {
     Answer { status, head, body: body.into() }
 }
 
-/// Text as part of an address.
+/// Escapes text as part of an address.
 pub(crate) fn escaped(text: &str) -> String {
     use std::fmt::Write as _;
     text.bytes().fold(String::new(), |mut out, b| {
@@ -430,7 +431,7 @@ mod tests {
     use proptest::prelude::*;
     use std::fs;
 
-    /// A site in a folder of its own, with a secret beside it and a link to the secret inside.
+    /// Makes a site in a folder of its own, with a secret next to it and a link to the secret inside.
     fn site(test: &str) -> (Site, PathBuf) {
         let base = std::env::temp_dir().join(format!("burgeon-site-{test}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&base);
@@ -448,12 +449,12 @@ mod tests {
         (site.locked_by(LocalKey::new(|bytes| bytes.fill(0xab))), base)
     }
 
-    /// What a browser sends that has come with the key.
+    /// Returns the cookie of a browser that has come with the key.
     fn kept() -> String {
         format!("\r\nCookie: burgeon-80=1; burgeon-7734={}", "ab".repeat(16))
     }
 
-    /// The answer to a head without a body.
+    /// Returns the answer to a head without a body.
     fn plain(site: &Site, head: &[u8]) -> Answer {
         let peer = IpAddr::from([127, 0, 0, 1]);
         match site.asked(head, peer) {
@@ -637,7 +638,7 @@ mod tests {
         }
         let told = get(&site, file, "");
         assert!(String::from_utf8_lossy(&told.body).contains("Copy the link from the terminal"));
-        // A key in the address of the file itself is not enough: it would stand in the history of the browser.
+        // A key in the address of the file itself is not enough: it would appear in the history of the browser.
         assert_eq!(get(&site, &format!("GET /opened/my%20rose.svg?key={key} HTTP/1.1"), "").status, 401);
         assert_eq!(get(&site, "GET / HTTP/1.1", "").status, 200, "the page is no secret");
         assert_eq!(get(&site, &format!("GET /?key={wrong} HTTP/1.1"), "").status, 401);
@@ -651,7 +652,7 @@ mod tests {
             assert!(entered.head.contains(&keeps), "{}", entered.head);
         }
         assert_eq!(&*get(&site, file, &kept()).body, b"private");
-        // A file without a key is for nobody, and a page without a file needs no key.
+        // Nobody gets a file without a key, and a page without a file needs no key.
         let nobodys = Site::new(Page::Inside(&[]), 7734, Some(base.join("my rose.svg"))).unwrap();
         assert_eq!(get(&nobodys, file, &kept()).status, 401);
         assert_eq!(get(&nobodys, &format!("GET /?key={key} HTTP/1.1"), "").status, 401);

@@ -1,7 +1,7 @@
-//! Valid syntax, absurd content: files that every reader takes, and that no person would call a plant.
+//! Valid syntax, absurd content: files that every reader accepts, and that no person would call a plant.
 //!
-//! Each family says how its cases may end. `BURGEON_ABSURD=N` runs N cases instead of 600. A case depends on its number
-//! alone, and a failure names it: `BURGEON_ABSURD=1 BURGEON_ABSURD_SEED=that` does it again.
+//! Each family lists the ways in which its cases may end. `BURGEON_ABSURD=N` runs N cases instead of 600. A case
+//! depends on its number alone, and a failure names it: `BURGEON_ABSURD=1 BURGEON_ABSURD_SEED=that` repeats it.
 #![expect(
     clippy::unwrap_used,
     clippy::disallowed_methods,
@@ -21,12 +21,12 @@ use serde_json::Value;
 use crate::generated::{Dice, asked, run};
 use crate::tools::{FLOWER, folder, json, names};
 
-/// How a case ends.
+/// End of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     /// Exit status 2 and one line.
     Refused,
-    /// A result of which a check failed, with what to do.
+    /// A result with a failed check, and its remedy.
     Doubted,
     /// A result that passes all checks, with a warning.
     Warned,
@@ -36,7 +36,7 @@ enum End {
 
 use End::{Doubted, Plausible, Refused, Warned};
 
-/// Files of one sort of absurd content, and the command that reads them.
+/// Files with one kind of absurd content, and the command that reads them.
 struct Family {
     name: &'static str,
     args: &'static str,
@@ -53,7 +53,7 @@ const SCAN: &str = "scan in.xyz";
 const FIT: &str = "bloom fit in.csv -o law.json";
 const MARKS: &str = "leaf in.csv --texture plain --subdivisions 1 --sides 4";
 
-/// A hundred marks of a plain leaf as they are written, `unit` times as large; `mark(row, k)` is where mark k comes from.
+/// Writes a hundred marks of a plain leaf, scaled by `unit`; `mark(row, k)` gives the mark whose position mark k has.
 fn marks(unit: f64, mark: impl Fn(usize, usize) -> (usize, usize)) -> String {
     let mut text = String::from("# unit: m\nrow,mark,x,y,z,thickness,midrib\n");
     let _ = writeln!(text, "tip,,0,0,{},,{}", 0.1 * unit, 0.0005 * unit);
@@ -71,7 +71,7 @@ fn marks(unit: f64, mark: impl Fn(usize, usize) -> (usize, usize)) -> String {
     text
 }
 
-/// A number from `low` to `high`, more often small.
+/// Returns a number from `low` to `high`, more often a small one.
 fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.below(1000) as f64 / 999.0)
 }
@@ -160,7 +160,7 @@ fn plane_of_points(dice: &mut Dice) -> String {
     points(300, || [4.0 * even(dice) - 2.0, high, 4.0 * even(dice) - 2.0])
 }
 
-/// A bare tree of a scan, +Z up: a stem that forks, `unit` metres to the metre, at `x`.
+/// Writes a scan of a bare tree, +Z up: a stem that forks, `unit` metres to the metre, at `x`.
 fn scanned(dice: &mut Dice, unit: f64, x: f64) -> String {
     let mut branch = 0;
     points(4000, || {
@@ -250,10 +250,10 @@ fn edits_that_remove_all(dice: &mut Dice) -> String {
     )
 }
 
-/// Each beside a drawing, `flower.svg`.
+/// Families; each file lies next to a drawing, `flower.svg`.
 const FAMILIES: [Family; 23] = [
     Family { name: "a dot", args: SKETCH, file: "in.svg", content: one_dot, ends: &[Refused] },
-    // A line by itself is a stem by rule: nothing was weighed that could be doubted.
+    // A line by itself is a stem by rule: there was no alternative that could be doubted.
     Family {
         name: "a line",
         args: SKETCH,
@@ -281,7 +281,7 @@ const FAMILIES: [Family; 23] = [
         args: SKETCH,
         file: "in.svg",
         content: noise,
-        // Few of them pass: what crosses at random may look like a bare bush.
+        // Few of them pass: random crossing lines may look like a bare bush.
         ends: &[Doubted, Warned, Plausible],
     },
     Family {
@@ -393,7 +393,7 @@ const FAMILIES: [Family; 23] = [
     },
 ];
 
-/// One case: how it ended, or what is wrong.
+/// Runs one case: returns how it ended, or the fault.
 fn case(seed: u64, dir: &Path) -> Result<(usize, End), String> {
     let which = usize::try_from(seed).unwrap() % FAMILIES.len();
     let family = &FAMILIES[which];

@@ -8,13 +8,13 @@ use std::path::Path;
 use serde_json::Value;
 use tools::{burgeon, folder, good, json};
 
-/// Refused in a line that holds `want`.
+/// Checks that the command is refused in a line that holds `want`.
 fn bad(folder: &Path, args: &[&str], want: &str) {
     let text = tools::bad(folder, args);
     assert!(text.contains(want), "{text:?} should say {want:?}");
 }
 
-/// A leaf of `length` mm that rises by `rise`, as text.
+/// Writes a leaf of `length` mm that rises by `rise`.
 fn leaf(length: f64, rise: f64) -> String {
     let mut text = String::new();
     for i in 0..40 {
@@ -79,7 +79,7 @@ fn a_law_is_fitted_and_drives_a_day_an_animation_and_another_species() {
 #[test]
 fn a_flower_of_your_own_is_a_file() {
     let dir = folder("bloom_own");
-    // What docs/bloom.md shows.
+    // The example in docs/bloom.md.
     let docs = include_str!("../../../../docs/bloom.md");
     let star = docs.split("```toml").find(|part| part.contains("name = \"star\"")).unwrap();
     let star = star.split("```").next().unwrap().trim_start();
@@ -90,7 +90,7 @@ fn a_flower_of_your_own_is_a_file() {
         (&report["items"][0]["name"], &report["items"][0]["counts"]["petals"]),
         (&"star".into(), &5.into())
     );
-    // A preset's file is the preset.
+    // A preset's file gives the preset.
     let lily = include_str!("../../../../crates/bloom/presets/lily.toml");
     fs::write(dir.join("mine.toml"), lily).unwrap();
     for (start, out) in [("mine.toml", "mine.ply"), ("lily", "own.ply")] {
@@ -153,7 +153,7 @@ fn bad_input_is_one_clear_line() {
     assert!(!dir.join("law").exists() && !dir.join("x.glb").exists(), "nothing is half-written");
 }
 
-/// A stages file of three days, all the same scan as one organ.
+/// Writes a stages file of three days, all the same scan as one organ.
 fn thrice(dir: &Path, scan: &str) -> String {
     let stage = |d| format!("[[stage]]\nfile = \"{scan}\"\nday = {d}\norgan = \"x\"\n");
     let name = format!("{scan}.toml");
@@ -212,13 +212,13 @@ fn hostile_scans_are_told_in_one_line() {
     assert!(!dir.join("law").exists(), "nothing is half-written");
 }
 
-/// Sine and cosine of the angle whose half has this tangent.
+/// Returns sine and cosine of the angle whose half has this tangent.
 fn sin_cos(half: f64) -> (f64, f64) {
     (2.0 * half / (1.0 + half * half), (1.0 - half * half) / (1.0 + half * half))
 }
 
-/// A seedling in mm, +Y up: a stem and two leaves of `length`, turned about the stem by the angle whose half has the tangent
-/// `turn`, and moved along x by `shift`.
+/// Writes a seedling in mm, +Y up: a stem and two leaves of `length`, rotated about the stem by the angle whose half
+/// has the tangent `turn`, and moved along x by `shift`.
 fn seedling(length: f64, turn: f64, shift: f64) -> String {
     let mut points: Vec<[f64; 3]> = Vec::new();
     for i in 0..60 {
@@ -286,7 +286,7 @@ fn the_turn_of_a_pot_is_told_and_each_day_is_left_out() {
     };
     assert_eq!(trials[1]["ways"][2]["way"], "nearest day");
     assert!(mean(0) < mean(2), "{} {}", mean(0), mean(2));
-    // In the frame of the plant it stands as on the first day; in the scanner's as on its own.
+    // In the frame of the plant it stands as on the first day; in the scanner's as on its own day.
     let run = [
         "bloom",
         "run",
@@ -346,7 +346,7 @@ fn a_growth_table_gives_laws_with_errors() {
     fit("day,size\n1,2\n1,3\n3,4\n", "two sizes on day 1");
     fit("day,size\n1,2\nx,3\n", "line 3");
     bad(&dir, &["bloom", "fit", "t.csv", "-o", "x.json", "--leave-one-out"], "--leave-one-out is for scans");
-    // What three values of one plant cannot determine is said.
+    // Quantities that three values of one plant cannot determine are reported.
     fs::write(dir.join("few.csv"), "day,size\n1,2\n2,3\n3,3.5\n").unwrap();
     good(&dir, &["bloom", "fit", "few.csv", "-o", "few.json", "--report", "few.r.json"]);
     assert_eq!(json(&dir.join("few.r.json"))["laws"][0]["determined"], false);

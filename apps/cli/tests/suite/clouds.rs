@@ -15,7 +15,7 @@ fn report(folder: &Path, args: &[&str]) -> Value {
     serde_json::from_str(&good(folder, &[args, &["--json"]].concat())).unwrap()
 }
 
-/// A blade of 60 mm x 36 mm in points 0.8 mm apart, times `size`, moved by `by`; +Z up.
+/// Writes a blade of 60 mm x 36 mm in points 0.8 mm apart, scaled by `size`, moved by `by`; +Z up.
 fn blade(folder: &Path, name: &str, size: f64, by: [f64; 3]) {
     let mut text = String::new();
     for i in 0..75 {
@@ -136,7 +136,7 @@ fn a_scan_in_another_unit_is_the_leaf_or_says_so() {
         let told = report(&at, &["leaf", "--scan", name, "--up", "z", "--unit", unit, "-o", "x.glb"]);
         assert!(told["items"][0]["warnings"].to_string().contains("is --unit right?"), "{name} {unit}");
     }
-    // Mirrored, and with another axis up, it is as long.
+    // Mirrored, and with another axis up, it has the same length.
     let text = fs::read_to_string(at.join("m.xyz")).unwrap();
     let flipped: String = text.lines().map(|l| format!("-{l}\n").replace("--", "")).collect();
     fs::write(at.join("mirrored.xyz"), flipped).unwrap();

@@ -37,7 +37,7 @@ fn sketch_writes_model_picture_and_report() {
     assert!(report["version"].is_string());
     assert_eq!(
         report["input"],
-        serde_json::json!({"path": "rose.svg", "drawings": 1, "strokes": 8, "offset_m": null})
+        serde_json::json!({"path": "rose.svg", "drawings": 1, "strokes": 8, "offset_m": null, "coordinate_system": null})
     );
     assert_eq!((&report["ok"], &report["failed"]), (&1.into(), &0.into()));
     let item = &report["items"][0];
@@ -229,7 +229,7 @@ fn bad_input_is_told_in_one_line_and_leaves_nothing() {
         (&["render", "noise.glb", "-o", "x.jpg"], &["x.jpg", ".png"]),
         (&["convert", "rose.svg", "-o", "x.glb"], &["rose.svg", "burgeon sketch"]),
         (&["convert", "noise.glb", "-o", "x.docx"], &["x.docx", ".glb"]),
-        (&["info", "what.xyz"], &["what.xyz", "neither"]),
+        (&["info", "what.xyz"], &["what.xyz", "no point"]),
         (&["info", "folder.glb"], &["folder.glb", "is a folder"]),
         (&["wood", "x"], &["wood"]),
     ] {
@@ -344,7 +344,7 @@ fn own_fixtures_make_plants() {
     assert!(item["counts"]["leaves"].as_u64().unwrap() >= 1, "{item:#}");
 }
 
-/// Table 1 of He and Cheng (2021): drawings of the same make-up give models of the same make-up.
+/// Table 1 of He and Cheng (2021): drawings of the same composition give models of the same composition.
 #[test]
 fn the_eight_sketches_of_table_1_have_the_papers_counts() {
     // Strokes, leaves and petals, branches, triangles.
@@ -392,7 +392,7 @@ fn a_project_brings_its_settings_and_options_win_over_them() {
     assert!(good(&dir, &["info", "a.glb"]).contains("petal-violet"));
     good(&dir, &["sketch", "sample.burgeon", "-o", "b.glb", "--seed", "8", "--petals", "white"]);
     assert!(good(&dir, &["info", "b.glb"]).contains("petal-white"));
-    // The same drawing without the project's settings is another plant; with them it is the same.
+    // The same drawing without the project's settings gives another plant; with them it gives the same.
     good(&dir, &["convert", "sample.burgeon", "-o", "sample.json"]);
     let settings = ["--seed", "7", "--leaf-depth", "signed", "--density", "1.5"];
     good(&dir, &[&["sketch", "sample.json", "-o", "c.glb", "--report", "c.json"], &settings[..]].concat());
@@ -419,7 +419,7 @@ fn organs_wear_what_a_file_of_materials_says() {
     good(&dir, &["sketch", drawing, "-o", "a.glb", "--materials", "m.toml"]);
     let info = good(&dir, &["info", "a.glb"]);
     assert!(info.contains("petal-picotee-1") && !info.contains("petal-pink"), "{info}");
-    // The picture of a model is a picture too.
+    // The picture of a model is also a picture.
     good(&dir, &["sketch", drawing, "--png", "petal.png", "--size", "64x64"]);
     let strokes = "[[strokes]]\nstrokes = [0, 1, 2, 3, 4, 5]\nmaterial = { pattern = \"picture\", picture = \"petal.png\" }\n";
     fs::write(dir.join("s.toml"), strokes).unwrap();
@@ -447,7 +447,7 @@ fn organs_wear_what_a_file_of_materials_says() {
 /// Drawings whose strokes are understood only together: a smooth crown on a trunk, a pot, fronds, a rosette.
 #[test]
 fn the_gallery_is_understood() {
-    // Least and most of: flowers, petals, leaves, branches.
+    // Least and most numbers of flowers, petals, leaves, branches.
     const KNOWN: [(&str, [(u64, u64); 4]); 9] = [
         ("apple-tree", [(0, 0), (0, 0), (300, 12_000), (50, 1_200)]),
         ("cactus", [(0, 0), (0, 0), (0, 0), (3, 3)]),

@@ -1,4 +1,4 @@
-//! Plants of all makers are exported alike: levels, budgets, programs that they are for.
+//! Export of plants of all makers in the same way: levels, budgets, target programs.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::fs;
@@ -10,7 +10,7 @@ use crate::tools::{FLOWER, bad, folder, good};
 
 const OAK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/gallery/oak.svg");
 
-/// The entries of the report of a command.
+/// Returns the entries of the report of a command.
 fn items(dir: &Path, args: &[&str]) -> Vec<Value> {
     let report: Value = serde_json::from_str(&good(dir, &[args, &["--json"]].concat())).unwrap();
     report["items"].as_array().unwrap().clone()
@@ -20,7 +20,7 @@ fn triangles(items: &[Value]) -> Vec<u64> {
     items.iter().map(|item| item["counts"]["triangles"].as_u64().unwrap()).collect()
 }
 
-/// The JSON of a GLB.
+/// Returns the JSON of a GLB.
 fn gltf(path: &Path) -> Value {
     let glb = fs::read(path).unwrap();
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
@@ -31,7 +31,8 @@ fn gltf(path: &Path) -> Value {
 fn each_level_of_any_maker_has_at_most_half_of_the_one_before_while_parts_can_be_coarser() {
     let dir = folder("export-levels");
     fs::write(dir.join("flower.svg"), FLOWER).unwrap();
-    // With each the levels that have at most half: parts of few, such as veins and petals, are then as coarse as they can be.
+    // For each maker, the levels that have at most half: parts of few, such as veins and petals, are then as coarse as
+    // possible.
     let makers: [(&[&str], usize); 5] = [
         (&["sketch", OAK], 3),
         (&["sketch", "flower.svg"], 2),
@@ -128,12 +129,21 @@ fn an_engine_sets_what_it_wants_and_says_so() {
     };
     let unity = made("unity", "oak.glb", &[]);
     assert_eq!(unity["for"]["name"], "unity");
-    assert!(unity["for"]["set"].to_string().contains("--lods 3") && dir.join("oak-lod3.glb").exists());
+    assert!(unity["for"]["set"].to_string().contains("--lods 3") && !dir.join("oak-lod1.glb").exists());
     let json = gltf(&dir.join("oak.glb"));
-    assert_eq!(json["animations"][0]["name"], "wind");
+    let node = |json: &Value, k: usize| json["nodes"][k]["name"].as_str().unwrap().to_owned();
+    assert_eq!([1, 4, 5].map(|k| node(&json, k)), ["oak_LOD0", "oak_LOD3", "oak_collider"]);
+    assert!(json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_5"].is_u64(), "wind");
     let names: Vec<&str> =
         json["materials"].as_array().unwrap().iter().map(|m| m["name"].as_str().unwrap()).collect();
     assert!(names.iter().all(|name| name.starts_with("oak_")), "{names:?}");
+    made("godot", "oak.glb", &[]);
+    let json = gltf(&dir.join("oak.glb"));
+    assert_eq!([1, 2].map(|k| node(&json, k)), ["oak_mesh", "oak-colonly"]);
+    made("unreal", "oak.glb", &[]);
+    assert_eq!(node(&gltf(&dir.join("oak.glb")), 2), "UCX_oak_mesh_00");
+    made("unity", "oak.glb", &["--sway", "--lods", "1"]);
+    assert!(gltf(&dir.join("oak.glb"))["skins"].is_array() && dir.join("oak-lod1.glb").exists());
     let three = made("three", "oak.glb", &["--lods", "0"]);
     assert!(!three["for"]["set"].to_string().contains("--lods"), "the command line wins");
     let json = gltf(&dir.join("oak.glb"));
@@ -149,6 +159,31 @@ fn an_engine_sets_what_it_wants_and_says_so() {
 }
 
 #[test]
+fn an_assembly_has_joints_for_its_wood_and_leaves_on_them() {
+    let dir = folder("export-assembly");
+    let asked = ["grow", "hazel", "--age", "4", "--textures", "64", "--for", "unreal", "-o", "hazel.usda"];
+    let report: Value = serde_json::from_str(&good(&dir, &[&asked[..], &["--json"]].concat())).unwrap();
+    assert!(report["for"]["set"].to_string().contains("120 joints"), "{}", report["for"]);
+    let text = fs::read_to_string(dir.join("hazel.usda")).unwrap();
+    let list = |name: &str| -> Vec<String> {
+        let line = text.lines().find(|line| line.contains(&format!("{name} = ["))).unwrap();
+        let inner = line.split_once('[').and_then(|(_, rest)| rest.split_once("= [")).unwrap().1;
+        inner.split(']').next().unwrap().split(", ").map(|n| n.trim_matches('"').to_owned()).collect()
+    };
+    let (joints, bound) = (list("jointNames"), list("bindJoints"));
+    assert!(joints.len() > 2 && joints.len() <= 120, "{joints:?}");
+    let leaves = report["items"][0]["counts"]["leaves"].as_u64().unwrap();
+    assert_eq!(bound.len() as u64, leaves, "each leaf is a copy");
+    assert!(bound.iter().all(|name| joints.contains(name)) && bound.iter().any(|name| name != &joints[0]));
+    let wind: Value = serde_json::from_slice(&fs::read(dir.join("hazel-wind.json")).unwrap()).unwrap();
+    let named: Vec<&str> =
+        wind["Joints"].as_array().unwrap().iter().map(|j| j["JointName"].as_str().unwrap()).collect();
+    assert_eq!(named, joints);
+    assert!(bad(&dir, &[&asked[..], &["--lods", "2"]].concat()).contains("--lods"));
+    assert!(bad(&dir, &[&asked[..], &["--foliage", "cards"]].concat()).contains("holes"));
+}
+
+#[test]
 fn a_tree_has_the_height_that_is_asked_for_within_its_species() {
     let dir = folder("export-height");
     let tree = |height: &str| items(&dir, &["grow", "hazel", "--height", height, "--detail", "0.2"]);
@@ -158,6 +193,11 @@ fn a_tree_has_the_height_that_is_asked_for_within_its_species() {
     }
     let far = bad(&dir, &["grow", "hazel", "--height", "60", "--json"]);
     assert!(far.contains("out of reach"), "{far}");
+    let thick = items(&dir, &["grow", "birch", "--dbh", "0.1", "--detail", "0.2"]);
+    let dbh = thick[0]["plant"]["dbh_m"].as_f64().unwrap();
+    assert!((dbh - 0.1).abs() < 0.01, "{dbh}");
+    let far = bad(&dir, &["grow", "birch", "--dbh", "3", "--json"]);
+    assert!(far.contains("breast height is out of reach") && far.contains("--dbh"), "{far}");
     let latin = items(&dir, &["grow", "corylus avellana", "--age", "3", "--detail", "0.2"]);
     let hazel = items(&dir, &["grow", "hazel", "--age", "3", "--detail", "0.2"]);
     assert_eq!(latin[0]["digest"], hazel[0]["digest"]);
@@ -179,7 +219,7 @@ fn a_print_is_one_closed_body_on_a_flat_foot() {
     let number = |at: usize| f32::from_le_bytes(stl[at..at + 4].try_into().unwrap());
     let count = u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize;
     assert_eq!(stl.len(), 84 + 50 * count);
-    // Corners by their bits: each edge is there once each way.
+    // Corners by their bits: each edge occurs once in each direction.
     let corner = |t: usize, c: usize| {
         let at = 84 + 50 * t + 12 + 12 * c;
         [0, 4, 8].map(|k| number(at + k).to_bits())

@@ -1,4 +1,4 @@
-//! Files of people: what is read is never replaced, what is written is whole, and a refused command changes nothing.
+//! Files of users: inputs are never replaced, outputs are whole, and a refused command changes nothing.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::missing;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 use tools::{FLOWER, bad, burgeon, folder, good, names, status};
 
-/// Everything below a folder: links by what they say, files by their bytes.
+/// Returns everything below a folder: links with their targets, files with their bytes.
 fn all(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     for name in names(folder) {
@@ -26,7 +26,7 @@ fn all(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Refused with one line that holds these parts; every file is as before.
+/// Checks that the command is refused with one line that holds these parts, and every file is unchanged.
 fn refused(folder: &Path, args: &[&str], parts: &[&str]) {
     let before = all(folder);
     let line = bad(folder, args);
@@ -48,7 +48,7 @@ fn fixture(name: &str) -> String {
     format!("{}/../../fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A picture of a few pixels.
+/// Writes a picture of a few pixels.
 fn png(folder: &Path, name: &str) {
     fs::write(folder.join("box.obj"), BOX).unwrap();
     good(folder, &["render", "box.obj", "-o", name, "--size", "8x8"]);
@@ -70,7 +70,7 @@ fn a_texture_that_was_read_is_not_replaced_by_one_that_is_written() {
     }
     refused(&dir, &["leaf", "leaf1.csv", "-o", "l.obj", "--png", "l-leaf.png"], &["l-leaf.png", SAME]);
     refused(&dir, &["leaf", "--template", "leaf1.csv", "-o", "leaf1.csv"], &["-o", INPUT]);
-    // No input: of an earlier run.
+    // Not an input: from an earlier run.
     good(&dir, &["leaf", "leaf1.csv", "-o", "l.obj"]);
     good(&dir, &["leaf", "leaf1.csv", "-o", "l.obj", "--surface", "bezier"]);
 }
@@ -123,7 +123,7 @@ fn what_a_model_names_is_kept() {
     fs::write(dir.join("a.gltf"), gltf).unwrap();
     good(&dir, &["info", "a.gltf"]);
     refused(&dir, &["convert", "a.gltf", "-o", "x.obj", "--report", "p.bin"], &["p.bin", "--report", INPUT]);
-    // Named, though not read: of no use to us. Or outside of the model's folder.
+    // Named, but not read, because we cannot use it. Or outside the model's folder.
     fs::create_dir(dir.join("sub")).unwrap();
     fs::write(dir.join("sub/b.mtl"), "newmtl wood\nmap_Bump -bm 0.2 n.png\nmap_Kd ../t-wood.png\n").unwrap();
     fs::write(dir.join("sub/b.obj"), format!("mtllib b.mtl\n{BOX}")).unwrap();
@@ -143,7 +143,7 @@ fn what_a_model_names_is_kept() {
     for name in ["sub/n.png", "p.bin"] {
         refused(&dir, &["convert", "b.glb", "-o", "x.obj", "--report", name], &["--report", INPUT]);
     }
-    // A model may be converted beside itself.
+    // A model may be converted into the same folder.
     good(&dir, &["convert", "a.obj", "-o", "a.ply"]);
 }
 
@@ -213,7 +213,7 @@ fn laws_scans_and_edits_are_kept() {
         .unwrap();
     let own = ["bloom", "run", "rose", "--petal", "petal.obj", "--day", "3", "-o", "petal.obj"];
     refused(&dir, &own, &["petal.obj: -o", INPUT]);
-    // A folder that was made for frames goes with them.
+    // A folder that was made for frames is removed with them.
     let frames = ["bloom", "run", "lily", "--frames", "2", "-o", "a/b", "--report", "a/b/lily-001.glb"];
     refused(&dir, &frames, &["lily-001.glb: --report and -o", SAME]);
     fs::create_dir_all(dir.join("a/b")).unwrap();
@@ -241,7 +241,7 @@ fn laws_scans_and_edits_are_kept() {
     refused(&dir, &[&shape[..], &["x.obj", "--lods", "1", "--report", "x-lod1.mtl"]].concat(), &[SAME]);
 }
 
-/// Four drawings whose models, textures and pictures would share names, and names of other languages.
+/// Makes four drawings whose models, textures and pictures would share names, and names of other languages.
 fn batch() -> String {
     let stem = r#"[[[0,3,9,10],[0,50,120,180]]]"#;
     let leaf = r#"[[[10,12,11],[200,120,20]],[[11,40,60,40,12],[120,80,90,120,121]]]"#;
@@ -309,7 +309,7 @@ fn names_of_other_languages_are_kept() {
     let models: Vec<String> = names(&dir.join("out")).into_iter().filter(|n| n.ends_with(".obj")).collect();
     let cut = format!("{}.obj", "花".repeat(66));
     assert_eq!(models, ["Grüße-🌹.obj", "हिन्दी.obj", "花.obj", cut.as_str()]);
-    // As long as names can be: those beside it are shorter.
+    // The longest possible name: names of the files next to it are shorter.
     let model = format!("{}.obj", "花".repeat(83));
     good(&dir, &["sketch", "花.svg", "-o", &model]);
     let info: serde_json::Value = serde_json::from_str(&good(&dir, &["info", &model, "--json"])).unwrap();
@@ -378,7 +378,7 @@ fn drafts_of_processes_that_were_killed_are_swept() {
     let day = std::time::Duration::from_secs(24 * 60 * 60 + 60);
     let old = std::time::SystemTime::now() - day;
     let stale = [".burgeon-17-0.part", ".burgeon-0123456789abcdef.part"];
-    // Too young, another's name, a folder: not ours to remove.
+    // Too young, another's name, a folder: these are not ours to remove.
     let kept = [".burgeon-17-1.part", ".burgeon-fedcba9876543210.part", ".burgeon-mine.part"];
     for name in stale.iter().chain(&kept) {
         fs::write(dir.join(name), "half").unwrap();
@@ -452,7 +452,7 @@ mod unix {
         refused(&dir, &["sketch", "rose.svg", "-o", "d.obj"], &["d.mtl", "leads to no file"]);
     }
 
-    /// In a shell that lets no file grow beyond some kilobytes: a disk that is full in the middle.
+    /// Runs in a shell that lets no file grow beyond some kilobytes: a disk that becomes full half-way.
     fn cramped(dir: &Path, kilobytes: u32, args: &[&str]) -> std::process::Output {
         let script = format!("trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"", 2 * kilobytes);
         let mut command = Command::new("sh");
@@ -471,7 +471,7 @@ mod unix {
         let grow = ["grow", "small.toml", "-o", "g.obj", "--lods", "2", "--qsm", "g.csv"];
         let frames = ["bloom", "run", "tulip", "-o", "frames", "--frames", "3", "--format", "obj"];
         for args in [&sketch[..], &grow, &frames] {
-            // First where nothing was, then over files of an earlier run.
+            // First without earlier files, then over those of an earlier run.
             for earlier in [false, true] {
                 if earlier {
                     good(&dir, args);

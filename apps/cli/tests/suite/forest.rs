@@ -1,4 +1,4 @@
-//! `burgeon forest`: an inventory as tiles, alone and together, interrupted and carried on.
+//! `burgeon forest`: an inventory as tiles, alone and together, interrupted and continued.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,7 +43,7 @@ fn inventory(at: &Path) {
     fs::write(at.join("trees.csv"), text).unwrap();
 }
 
-/// Every file below a folder.
+/// Returns every file below a folder.
 fn files(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut open = vec![dir.to_path_buf()];
@@ -65,13 +65,13 @@ fn forest(at: &Path, more: &[&str]) -> Value {
     serde_json::from_str(&good(at, &all)).unwrap()
 }
 
-/// Document and bytes of a tile.
+/// Returns document and bytes of a tile.
 fn tile(bytes: &[u8]) -> (Value, Vec<u8>) {
     let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
     (serde_json::from_slice(&bytes[20..20 + length]).unwrap(), bytes[28 + length..].to_vec())
 }
 
-/// Rows of the inventory in the table of a tile.
+/// Returns rows of the inventory in the table of a tile.
 fn rows(bytes: &[u8]) -> Vec<u32> {
     let (root, bin) = tile(bytes);
     let table = &root["extensions"]["EXT_structural_metadata"]["propertyTables"][0];
@@ -82,7 +82,7 @@ fn rows(bytes: &[u8]) -> Vec<u32> {
     own.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect()
 }
 
-/// Copies of the trees of a tile: the most that a mesh has, of each plant.
+/// Returns the number of copies of the trees of a tile: for each plant, the largest number that a mesh has.
 fn copies(bytes: &[u8]) -> usize {
     let (root, _) = tile(bytes);
     let mut of_ids: BTreeMap<u64, u64> = BTreeMap::new();
@@ -95,7 +95,7 @@ fn copies(bytes: &[u8]) -> usize {
     usize::try_from(of_ids.values().sum::<u64>()).unwrap()
 }
 
-/// A tile and all below it: its box lies in that of the one above, and errors fall.
+/// Checks a tile and all below it: its box lies in that of the one above, and errors decrease.
 fn walk(node: &Value, above: Option<(&[f64], f64)>, seen: &mut Vec<String>) {
     let numbers = node["boundingVolume"]["box"].as_array().unwrap();
     let own: Vec<f64> = numbers.iter().map(|x| x.as_f64().unwrap()).collect();
@@ -125,7 +125,7 @@ fn a_forest_is_whole_alone_carried_on_and_repaired() {
     assert!(tally["dbh_error_max_m"].as_f64().unwrap() < 0.2, "{tally}");
     let whole = files(&at.join("all"));
 
-    // The tileset: every tile is there, and each level of detail has all trees.
+    // The tileset: every tile exists, and each level of detail has all trees.
     let tileset = json(&at.join("all/tileset.json"));
     assert_eq!(tileset["asset"]["version"], "1.1");
     let mut seen = Vec::new();
@@ -173,7 +173,7 @@ fn a_forest_is_whole_alone_carried_on_and_repaired() {
         assert_eq!(Some(bytes), whole.get(path), "{}", path.display());
     }
 
-    // Again: nothing is made, and what was damaged or is missing comes back.
+    // Again: nothing is made, and damaged or missing files are restored.
     fs::write(at.join("all").join(finest), b"damaged").unwrap();
     fs::remove_file(at.join("all").join(&seen[0])).unwrap();
     let again = forest(&at, &["-o", "all", "--map", "plan.png", "--glb", "--usd"]);
@@ -195,14 +195,14 @@ fn a_forest_that_was_killed_is_carried_on() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    // As soon as anything is noted.
+    // As soon as anything is recorded.
     let (journal, end) = (at.join("again/unfinished.jsonl"), Instant::now() + Duration::from_secs(120));
     while !journal.exists() && child.try_wait().unwrap().is_none() && Instant::now() < end {
         std::thread::sleep(Duration::from_millis(2));
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    // What is there is not said to be whole, unless it is.
+    // Existing files are not said to be whole, unless they are.
     assert!(at.join("again/tileset.json").exists() != journal.exists());
     forest(&at, &["-o", "again"]);
     assert!(files(&at.join("again")) == whole, "the same files");

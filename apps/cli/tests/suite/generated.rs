@@ -1,7 +1,7 @@
 //! Hostile files and command lines, made from good ones by a seeded generator.
 //!
-//! `BURGEON_HOSTILE=N` runs N cases instead of a few hundred, from `BURGEON_HOSTILE_SEED` on. A case depends on its seed
-//! alone, and a failure names it: `BURGEON_HOSTILE=1 BURGEON_HOSTILE_SEED=that` does it again.
+//! `BURGEON_HOSTILE=N` runs N cases instead of a few hundred, from `BURGEON_HOSTILE_SEED` on. A case depends on its
+//! seed alone, and a failure names it: `BURGEON_HOSTILE=1 BURGEON_HOSTILE_SEED=that` repeats it.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::tools;
@@ -21,7 +21,7 @@ use tools::{FLOWER, folder, good};
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const LIMIT: Duration = Duration::from_secs(10);
 
-/// Random numbers by splitmix64: the tests of the command know nothing of the core's.
+/// Random numbers by splitmix64: the tests of the command do not use the core's.
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
@@ -44,13 +44,13 @@ impl Dice {
 
 /// A command on a good file that is to be broken.
 struct Recipe {
-    /// The file that is broken. `IN` in the arguments is its name.
+    /// The file to be broken. `IN` in the arguments is its name.
     file: String,
     bytes: Vec<u8>,
     args: &'static str,
 }
 
-/// What lies beside the broken file, and the commands.
+/// Files next to the broken one, and the commands.
 struct Ground {
     beside: Vec<(String, Vec<u8>)>,
     recipes: Vec<Recipe>,
@@ -73,7 +73,7 @@ const EDITS: &str = r#"{"schema": "burgeon.edits/1", "edits": [
 const PCD: &str = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\nHEIGHT 1\nPOINTS 3\n\
                    DATA ascii\n0 0 0\n1 0 0\n1 1 0.5\n";
 
-/// A blade in points, `length` mm long.
+/// Writes a blade in points, `length` mm long.
 fn blade(length: f64) -> Vec<u8> {
     let mut text = String::new();
     for i in 0..24 {
@@ -86,7 +86,7 @@ fn blade(length: f64) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A LAS 1.2 file of 40 points, format 0.
+/// Writes a LAS 1.2 file of 40 points, format 0.
 fn las() -> Vec<u8> {
     let mut b = vec![0_u8; 227];
     b[..4].copy_from_slice(b"LASF");
@@ -107,7 +107,7 @@ fn las() -> Vec<u8> {
     b
 }
 
-/// Good files, most of them written by the command itself, and what is done with them.
+/// Makes good files, most of them by the command itself, and the commands that use them.
 fn ground() -> Ground {
     let dir = folder("generated-good");
     let put = |name: &str, bytes: &[u8]| fs::write(dir.join(name), bytes).unwrap();
@@ -220,7 +220,7 @@ const ENDINGS: [&str; 14] = [
     "las",
 ];
 
-/// The numbers of a text, by their places.
+/// Returns the numbers of a text, by their places.
 fn numbers(bytes: &[u8]) -> Vec<(usize, usize)> {
     let (mut found, mut from) = (Vec::new(), None);
     for (i, b) in bytes.iter().chain(b" ").enumerate() {
@@ -236,7 +236,7 @@ fn numbers(bytes: &[u8]) -> Vec<(usize, usize)> {
     found
 }
 
-/// Breaks some bytes in one way; says how.
+/// Breaks some bytes in one way, and describes it.
 fn break_once(bytes: &mut Vec<u8>, dice: &mut Dice) -> &'static str {
     let at = dice.below(bytes.len());
     let lines = |bytes: &[u8]| bytes.split(|&b| b == b'\n').map(<[u8]>::to_vec).collect::<Vec<_>>();
@@ -322,14 +322,14 @@ fn break_once(bytes: &mut Vec<u8>, dice: &mut Dice) -> &'static str {
     }
 }
 
-/// How the broken file comes to the command.
+/// Way in which the broken file is passed to the command.
 enum Given {
     File(String),
     /// Through standard input, as `-`.
     Pipe,
 }
 
-/// Puts a broken input into `dir`; says what it is.
+/// Puts a broken input into `dir`, and describes it.
 fn lay(dir: &Path, recipe: &Recipe, dice: &mut Dice) -> (String, Given, Vec<u8>) {
     let mut bytes = recipe.bytes.clone();
     let path = dir.join(&recipe.file);
@@ -374,7 +374,7 @@ fn lay(dir: &Path, recipe: &Recipe, dice: &mut Dice) -> (String, Given, Vec<u8>)
     ("a folder".into(), file, bytes)
 }
 
-/// Commands with an option to be given a hostile value; they need no other input than what lies there.
+/// Commands with an option that gets a hostile value; they need no other input than the existing files.
 const LINES: [(&str, &[&str]); 6] = [
     (
         "sketch flower.svg --no-textures --png out.png --unit cm -o out.ply",
@@ -489,7 +489,7 @@ fn hostile_line(dice: &mut Dice) -> Vec<OsString> {
     args
 }
 
-/// Every file below a folder, with what is in it.
+/// Returns every file below a folder, with its content.
 fn tree(dir: &Path) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
     let mut all = BTreeMap::new();
     let mut open = vec![dir.to_owned()];
@@ -526,7 +526,7 @@ fn wait(mut child: Child) -> Option<i32> {
     }
 }
 
-/// Runs with its output in files beside the folder, which no full pipe holds up.
+/// Runs a command with its output in files next to the folder, so that no full pipe blocks it.
 pub(crate) fn run(dir: &Path, args: &[OsString], input: Option<&[u8]>) -> Ran {
     let [told, said] = ["told", "said"].map(|e| dir.with_extension(e));
     let mut command = Command::new(env!("CARGO_BIN_EXE_burgeon"));
@@ -542,7 +542,7 @@ pub(crate) fn run(dir: &Path, args: &[OsString], input: Option<&[u8]>) -> Ran {
     Ran { status, told: String::from_utf8_lossy(&fs::read(told).unwrap()).into_owned() }
 }
 
-/// What is wrong with a run, if anything.
+/// Returns the fault of a run, if any.
 fn judge(dir: &Path, before: &BTreeMap<PathBuf, Option<Vec<u8>>>, ran: &Ran) -> Result<(), String> {
     let after = tree(dir);
     if after.keys().any(|p| p.to_string_lossy().contains(".burgeon-")) {
@@ -589,7 +589,7 @@ fn readable(path: &Path) -> Result<(), String> {
     if sound { Ok(()) } else { Err(format!("wrote {}, which cannot be read", path.display())) }
 }
 
-/// One case: how it ended, or what is wrong.
+/// Runs one case: returns how it ended, or the fault.
 fn case(ground: &Ground, seed: u64, dir: &Path) -> Result<Option<i32>, String> {
     let mut dice = Dice(seed);
     let _ = fs::remove_dir_all(dir);
@@ -610,7 +610,7 @@ fn case(ground: &Ground, seed: u64, dir: &Path) -> Result<Option<i32>, String> {
         (what, args, input)
     };
     let before = tree(dir);
-    // Warnings are no errors: the summary and they are off.
+    // Warnings are not errors: the summary and they are off.
     let args: Vec<OsString> = args.into_iter().chain(["-q".into()]).collect();
     let ran = run(dir, &args, input.as_deref());
     let fault = |fault: String| {
@@ -654,7 +654,7 @@ fn hostile_input_of_a_generator_is_refused_in_one_line_or_read() {
                         Ok(Some(0)) => drop(good.fetch_add(1, Ordering::Relaxed)),
                         Ok(_) => {}
                         Err(fault) => {
-                            // Kept as it was found.
+                            // Kept unchanged.
                             let _ = fs::rename(dir.join("case"), folder(&format!("generated-fault-{seed}")));
                             faults.lock().unwrap().push((seed, fault));
                         }
@@ -672,7 +672,7 @@ fn hostile_input_of_a_generator_is_refused_in_one_line_or_read() {
         lines.len(),
         lines.join("\n")
     );
-    // Both ways must have been gone: some is still read, some is refused.
+    // Both outcomes must occur: some input is still read, some is refused.
     let good = good.into_inner();
     println!("{count} cases, {good} read, {} refused", count - good);
     assert!(count < 100 || (good > count / 10 && good < count * 9 / 10), "{good} of {count} were read");

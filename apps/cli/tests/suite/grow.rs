@@ -16,7 +16,7 @@ fn item(folder: &Path, args: &[&str]) -> Value {
     report["items"][0].clone()
 }
 
-/// Points on a lattice of 0.25 m from 1 to 3 m above the ground.
+/// Writes points on a lattice of 0.25 m from 1 to 3 m above the ground.
 fn cloud(folder: &Path) -> usize {
     let mut text = String::new();
     let mut n = 0;
@@ -39,7 +39,7 @@ fn spec(folder: &Path, name: &str, text: &str) {
 
 const SMALL: &str = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
 
-/// A box as OBJ, from (0.4, 0, -2) to (3, 5, 2); without its last two faces it is open.
+/// Writes a box as OBJ, from (0.4, 0, -2) to (3, 5, 2); without its last two faces it is open.
 fn wall(folder: &Path, name: &str, faces: usize) {
     let mut text = String::new();
     for (x, y, z) in [
@@ -115,7 +115,7 @@ fn given_points_are_consumed_or_reported() {
     assert_eq!(growth["attractors"], n as u64);
     assert_eq!(growth["consumed"].as_u64().unwrap() + growth["unreachable"].as_u64().unwrap(), n as u64);
     assert_eq!(growth["unreachable"], 0);
-    // 100 m away: nothing can reach it. It must end and say so.
+    // 100 m away: nothing can reach it. Growth must end and report it.
     let far = fs::read_to_string(at.join("cloud.xyz")).unwrap() + "100 2 0\n100 2.1 0\n";
     fs::write(at.join("far.xyz"), far).unwrap();
     let args = [&["--attractors", "far.xyz"], &args[2..]].concat();
@@ -150,7 +150,7 @@ fn distances_must_make_sense() {
     assert!(told.contains("--kill") && told.contains("0.000001"), "{told}");
     let told = bad(&at, &["grow", "oak", "--root", "0,nan,0", "--json"]);
     assert!(told.contains("--root"), "{told}");
-    // In a spec the attraction distance is raised, and that is said.
+    // In a spec the attraction distance is raised, with a warning.
     spec(&at, "kill.toml", &format!("{SMALL}kill_m = 2.0\nattraction_m = 1.0\n"));
     let item = item(&at, &["kill.toml"]);
     assert!(item["warnings"][0].as_str().unwrap().contains("below the kill distance"), "{item}");
@@ -338,7 +338,7 @@ fn guided_growth_is_compared_with_its_baseline() {
         assert!(row["nodes"].as_u64() > Some(3000) && row["growth_seconds"].as_f64() > Some(0.0), "{row}");
         assert!(row.get("paper").is_none(), "its paper's times are lost");
     }
-    // Time against buds, with the paper's markers too, and what that comes to where crowns are equally full.
+    // Time against buds, also with the paper's markers, and the resulting ratio where crowns are equally full.
     let points = report["curve"]["points"].as_array().unwrap();
     let of = |p: &Value, key: &str| p[key].as_f64().unwrap();
     assert_eq!(points.len(), 12);
@@ -372,7 +372,7 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     assert_ne!(digest(&[]), digest(&["--seed", "2"]));
     let nodes = |args: &[&str]| item(&at, &[&["bush.toml"], args].concat())["growth"]["nodes"].as_u64();
     assert!(nodes(&["--age", "6"]) < nodes(&[]));
-    // What sheds no leaves has no season.
+    // A plant that sheds no leaves has no season.
     spec(&at, "deciduous.toml", &format!("{SMALL}[look]\nautumn_color = \"#d9a437\"\n"));
     let left =
         |season: &str| item(&at, &["deciduous.toml", "--season", season])["growth"]["leaves_kept"].clone();
@@ -381,14 +381,14 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     for args in [&["bush.toml", "--season", "0.5"][..], &["deciduous.toml", "--season", "1.5"]] {
         assert!(bad(&at, &[&["grow"], args, &["--json"]].concat()).contains("season"), "{args:?}");
     }
-    // Levels of detail stand beside the model, each smaller.
+    // Levels of detail lie next to the model, each smaller.
     let args = ["grow", "bush.toml", "-o", "bush.glb", "--lods", "2", "--json"];
     let report: Value = serde_json::from_str(&good(&at, &args)).unwrap();
     let triangles = |i: usize| report["items"][i]["counts"]["triangles"].as_u64().unwrap();
     assert!(triangles(1) < triangles(0) && triangles(2) < triangles(1));
     assert_eq!(report["items"][2]["output"], "bush-lod2.glb");
     assert!(at.join("bush-lod1.glb").exists() && at.join("bush-lod2.glb").exists());
-    // Wind goes where there is room for it, on every level; elsewhere it is told that it does not.
+    // Wind is written where there is room for it, on every level; elsewhere a warning says that it is not.
     good(&at, &["grow", "bush.toml", "-o", "wind.glb", "--wind", "--lods", "1", "-q"]);
     let blown = |file: &str| {
         let info: Value = serde_json::from_str(&good(&at, &["info", file, "--json"])).unwrap();
@@ -402,7 +402,7 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
         assert!(told.contains("--wind is for models as .glb, "), "{out}: {told}");
     }
     good(&at, &["grow", "bush.toml", "-o", "wind.usda", "--wind"]);
-    // One file, in which the same layer lies as it is.
+    // One file, which contains the same layer unchanged.
     good(&at, &["grow", "bush.toml", "-o", "wind.usdz", "--wind"]);
     let text = fs::read_to_string(at.join("wind.usdz").with_extension("usda")).unwrap();
     let whole = fs::read(at.join("wind.usdz")).unwrap();
@@ -582,7 +582,7 @@ fn a_drawing_of_a_tree_is_read_as_a_tree_again() {
     assert!(twice.contains("same.svg"), "{twice}");
 }
 
-/// The JSON of a GLB.
+/// Returns the JSON of a GLB.
 fn gltf(path: &Path) -> Value {
     let glb = fs::read(path).unwrap();
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;

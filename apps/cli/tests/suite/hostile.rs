@@ -1,4 +1,4 @@
-//! What careless and hostile users do: one clear line, status 2, and nothing broken.
+//! Mistakes and attacks of users: one clear line, status 2, and nothing broken.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::missing;
@@ -43,7 +43,7 @@ fn standard_input_is_read_from_a_pipe() {
     assert!(String::from_utf8_lossy(&out.stderr).contains("is empty"), "{out:?}");
 }
 
-/// A blade of 60 mm in points, +Z up.
+/// Writes a blade of 60 mm in points, +Z up.
 fn blade() -> String {
     let mut text = String::new();
     for i in 0..75 {
@@ -130,7 +130,7 @@ fn days_and_points_beyond_single_precision_make_no_broken_file() {
     fs::write(dir.join("a.xyz"), blade()).unwrap();
     fs::write(dir.join("far.xyz"), "0 0 1e90\n".repeat(40) + "0 0 0\n1 1 1\n").unwrap();
     let pair = ["bloom", "run", "a.xyz", "--end", "a.xyz", "--whole", "--unit", "mm", "-o", "out.ply"];
-    // Nothing says how it went before the first scan: it is as it was on that day.
+    // The motion before the first scan is unknown: the shape is that of its day.
     let points = |day: &str| {
         good(&dir, &[&pair[..], &["--day", day]].concat());
         fs::read(dir.join("out.ply")).unwrap()
@@ -138,7 +138,7 @@ fn days_and_points_beyond_single_precision_make_no_broken_file() {
     assert!(points("-1e308") == points("-1"), "a shape of no size");
     fs::remove_file(dir.join("out.ply")).unwrap();
     good(&dir, &["convert", "far.xyz", "-o", "far.ply"]);
-    assert!(good(&dir, &["info", "far.ply", "--json"]).contains("\"vertices\": 2"));
+    assert!(good(&dir, &["info", "far.ply", "--json"]).contains("\"points\": 2"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A process that is killed in the middle leaves what was there, or all of its files after the next command.
+//! A process that is killed half-way leaves the previous files, or all of its own after the next command.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -12,12 +12,12 @@ use std::time::{Duration, Instant};
 use crate::tools;
 use tools::{FLOWER, burgeon, folder, good, names};
 
-/// How often processes are killed, all commands together.
+/// Number of processes that are killed, for all commands together.
 const KILLS: usize = 200;
-/// Processes at a time.
+/// Number of processes at a time.
 const AT_ONCE: usize = 2;
 
-/// Commands that write several files: side by side, in two folders, with levels, many of a folder.
+/// Commands that write several files: next to each other, in two folders, with levels, many in a folder.
 const COMMANDS: [&[&str]; 4] = [
     &[
         "sketch",
@@ -56,7 +56,7 @@ fn ready(dir: &Path) {
     fs::write(dir.join("tiny.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
 }
 
-/// Every file below a folder that is not hidden.
+/// Returns every file below a folder that is not hidden.
 fn files(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut all = BTreeMap::new();
     for name in ["out", "more"] {
@@ -73,7 +73,7 @@ fn hidden(dir: &Path) -> Vec<String> {
     all.into_iter().flatten().filter(|n| n.starts_with(".burgeon-")).collect()
 }
 
-/// Kills one process after a part of the time that it takes; whether it was still there, and left unfinished files.
+/// Kills one process after a part of its duration; returns whether it was still running, and left unfinished files.
 fn kill_one(dir: &Path, args: &[&str], whole: &BTreeMap<PathBuf, Vec<u8>>, after: Duration) -> [bool; 2] {
     ready(dir);
     let earlier = || whole.keys().map(|path| (path.clone(), b"earlier".to_vec())).collect::<BTreeMap<_, _>>();
@@ -86,7 +86,7 @@ fn kill_one(dir: &Path, args: &[&str], whole: &BTreeMap<PathBuf, Vec<u8>>, after
     child.kill().unwrap();
     let killed = child.wait().unwrap().signal() == Some(9);
     let left = !hidden(dir).is_empty();
-    // The next command finishes or removes what is left in the folders that it writes into.
+    // The next command finishes or removes the remains in the folders that it writes into.
     good(dir, &["convert", "tiny.obj", "-o", "out/next.stl", "--report", "more/next.json", "-q"]);
     ["out/next.stl", "more/next.json"].iter().for_each(|name| fs::remove_file(dir.join(name)).unwrap());
     assert_eq!(hidden(dir), Vec::<String>::new(), "{args:?} after {after:?}");
@@ -110,7 +110,7 @@ fn two_hundred_kills_leave_sets_whole_or_untouched() {
         let whole = files(&dir);
         assert!(!whole.is_empty(), "{args:?}");
         for _ in 0..KILLS / COMMANDS.len() {
-            // Half of them near the end, where files get their names.
+            // Half of them near the end, when files get their names.
             let share = if numbers.next() < 0.5 { numbers.next() } else { 0.7 + 0.35 * numbers.next() };
             plans.push((args, whole.clone(), time.mul_f64(share)));
         }

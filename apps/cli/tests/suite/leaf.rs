@@ -63,7 +63,7 @@ fn growth_pose_and_plant_are_made() {
     assert!(bad(&at, &["leaf", "none.csv", "-o", "x.glb"]).contains("none.csv"));
 }
 
-/// A feather of a leaf as a vein graph in pixels: midrib, six pairs of side veins.
+/// Uses a pinnate leaf as a vein graph in pixels: midrib, six pairs of side veins.
 #[test]
 fn control_balls_are_moved_and_told_where_there_are_none() {
     let at = folder("leaf-balls");
@@ -75,11 +75,11 @@ fn control_balls_are_moved_and_told_where_there_are_none() {
         report["items"][0]["leaf"]["length_mm"].as_f64().unwrap()
     };
     let plain = length(&[]);
-    // The tip goes 50 mm on, in the direction of the leaf as a whole: its end hangs.
+    // The tip continues for 50 mm in the direction of the whole leaf: its end hangs.
     let longer = length(&["--ball", "0,1,0,0.05,0", "--surface", "nurbs"]);
     assert!(longer > plain + 20.0 && longer <= plain + 50.0, "{plain} {longer}");
     let marks = fs::read_to_string(at.join("m.csv")).unwrap();
-    // What is written is what was moved.
+    // The moved marks are written.
     good(&at, &["leaf", "m.csv", "-o", "again.glb"]);
     assert!(marks.contains("tip"), "{marks}");
     assert!((length(&["--ball=0,1,0,0.03,0", "--ball=0,1,0,0.02,0"]) - longer).abs() < 1e-9, "moves add up");
@@ -137,7 +137,7 @@ fn vein_graph_becomes_a_leaf_as_long_as_was_said() {
     assert_eq!(leaf["rows"], 7, "{leaf}");
     assert!((leaf["length_mm"].as_f64().unwrap() - 60.0).abs() < 1e-6, "{leaf}");
     assert!(leaf["vein_gap_mm"].as_f64().unwrap() < 1e-6, "{leaf}");
-    // The marks that were found make the same leaf again.
+    // The marks found give the same leaf again.
     let again: Value =
         serde_json::from_str(&good(&at, &["leaf", "m.csv", "--json", "--texture", "plain"])).unwrap();
     assert_eq!(again["items"][0]["leaf"]["rows"], 7);
@@ -228,7 +228,7 @@ fn chief_veins_that_start_together_make_a_leaf() {
         assert!(leaf["fit_error"]["max_mm"].as_f64().unwrap() < 1e-6, "{file}: {leaf}");
         let long = leaf["length_mm"].as_f64().unwrap();
         assert!((long / length - 1.0).abs() < 0.15, "{file} is {long} mm long");
-        // Veins of 10-sided rings, five parts a span.
+        // Veins of 10-sided rings, five parts for each span.
         let marks = if file == "m.csv" { 9 } else { 13 };
         let rings = 5 * (marks - 1) + 1;
         assert_eq!(leaf["veins"]["vertices"].as_u64(), Some(10 * rings * veins), "{file}");
@@ -256,7 +256,7 @@ fn profiles_of_maize_become_leaves_of_their_length() {
     let Ok(text) = fs::read_to_string(&file) else {
         return missing::skipped(file.display());
     };
-    // Every eighth, by the command line; all have the same reader.
+    // Every eighth, by the command line; all use the same reader.
     profiles("leaf-profiles", &text, 8, 79);
 }
 
@@ -292,7 +292,7 @@ fn profiles(name: &str, text: &str, step: usize, count: usize) {
     let beyond = (count + 1).to_string();
     let told = bad(&dir, &["leaf", "maize.json", "--number", &beyond, "-o", "x.glb"]);
     assert!(told.contains(&format!("holds {count} leaves")), "{told}");
-    // Without a unit 42 m is no leaf.
+    // 42 m without a unit is not a leaf.
     let out = burgeon(&dir, &["leaf", "maize.json", "-o", "x.glb"]);
     let warned = String::from_utf8_lossy(&out.stderr).into_owned();
     let several = format!("{count} leaves");
@@ -331,7 +331,7 @@ fn numbers_with_decimal_commas_are_read_or_refused_by_name() {
         report["items"][0]["digest"].as_str().unwrap().to_owned()
     };
     fs::write(dir.join("points.csv"), &text).unwrap();
-    // As a spreadsheet of a country with decimal commas writes it.
+    // As a spreadsheet with decimal commas writes it.
     let table = |line: &str| {
         if line.starts_with('#') { line.to_owned() } else { line.replace(',', ";").replace('.', ",") }
     };
@@ -341,11 +341,11 @@ fn numbers_with_decimal_commas_are_read_or_refused_by_name() {
     fs::write(dir.join("mixed.csv"), text.replace("26.5,414.8", "26,5,414,8")).unwrap();
     let told = bad(&dir, &["leaf", "mixed.csv", "-o", "x.glb"]);
     assert!(told.contains("line 7") && told.contains("semicolons"), "{told}");
-    // One mark times a hundred is told.
+    // One mark multiplied by a hundred is reported.
     fs::write(dir.join("stray.csv"), text.replace("26.5,414.8", "2650,41480")).unwrap();
     let out = burgeon(&dir, &["leaf", "stray.csv", "-o", "x.glb"]);
     assert!(String::from_utf8_lossy(&out.stderr).contains("row 1, mark 1 lies"), "{out:?}");
-    // What the file says of itself is not contradicted in silence.
+    // Statements of the file are not contradicted without an error.
     let told = bad(&dir, &["leaf", "points.csv", "--unit", "cm", "-o", "x.glb"]);
     assert!(told.contains("# unit: mm") && told.contains("--unit"), "{told}");
 }

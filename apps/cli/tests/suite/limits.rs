@@ -1,4 +1,4 @@
-//! Nothing is unbounded: what is too much is refused in one line, soon and without the memory that it asks for.
+//! Nothing is unbounded: an excessive input is refused in one line, soon and without the memory that it asks for.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::tools;
@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 use tools::{bad, burgeon, folder, good, names, status};
 
-/// Far more than any test here needs: a debug build on a busy machine.
+/// Time limit, far more than any test here needs: a debug build on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Specs and what their refusal says. Each took gigabytes or minutes once.
+/// Specs and their refusals. Each once took gigabytes or minutes.
 const SPECS: &[(&str, &str, &[&str])] = &[
     (
         "a crown of a thousand kilometres",
@@ -151,7 +151,7 @@ fn a_drawing_of_very_many_strokes_is_refused_in_every_format() {
     }
 }
 
-/// A cylinder: slivers all around and fans at both ends, which make an index slow.
+/// Writes a cylinder: slivers all around and fans at both ends, which make an index slow.
 fn tower(n: u32) -> String {
     let mut obj = String::new();
     // A step around the circle, by the first terms of sine and cosine: the angle is small.
@@ -192,11 +192,12 @@ fn an_obstacle_of_a_hundred_thousand_triangles_is_fine() {
     fs::write(dir.join("tower.obj"), tower(25_000)).unwrap();
     let started = Instant::now();
     good(&dir, &["grow", "oak", "--obstacle", "tower.obj", "-o", "x.stl"]);
-    // Seconds; before, more than a minute in a release build, which is many here. The rest is for a busy machine.
+    // Seconds; before, more than a minute in a release build, which is many minutes here. The rest is for a busy
+    // machine.
     assert!(started.elapsed() < Duration::from_secs(150), "{:?}", started.elapsed());
 }
 
-/// Numbers that follow from one another, for choices.
+/// Pseudo-random numbers for choices.
 struct Dice(u64);
 
 impl Dice {
@@ -213,19 +214,19 @@ impl Dice {
         self.next(n) == 0
     }
 
-    fn of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
+    fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.next(all.len())]
     }
 }
 
-/// Makes specs whose numbers stand at the ends of the ranges that the schema of specs gives, and in between.
+/// Makes specs whose numbers lie at the ends of the ranges in the schema of specs, and in between.
 struct Extremes<'a> {
     defs: &'a Map<String, Value>,
     dice: Dice,
 }
 
 impl Extremes<'_> {
-    /// A value of a schema; none where it may be left out.
+    /// Returns a value of a schema; `None` where it may be omitted.
     fn value(&mut self, name: &str, schema: &Value) -> Option<Value> {
         if let Some(of) = schema["$ref"].as_str() {
             return self.value(name, &self.defs[of.rsplit('/').next().unwrap()]);
@@ -234,12 +235,12 @@ impl Extremes<'_> {
             return Some(fixed.clone());
         }
         if let Some(words) = schema["enum"].as_array() {
-            return Some(self.dice.of(words).clone());
+            return Some(self.dice.pick(words).clone());
         }
         for key in ["oneOf", "anyOf"] {
             if let Some(all) = schema[key].as_array() {
                 let some: Vec<&Value> = all.iter().filter(|s| s["type"] != "null").collect();
-                let chosen = *self.dice.of(&some);
+                let chosen = *self.dice.pick(&some);
                 return self.value(name, chosen);
             }
         }
@@ -248,7 +249,7 @@ impl Extremes<'_> {
             kind => kind.as_str(),
         };
         match kind? {
-            // Branches that there are.
+            // Existing branches.
             "array" if name == "path" => {
                 Some(if self.dice.one_in(2) { json!([0]) } else { json!([0, self.dice.next(9)]) })
             }
@@ -261,7 +262,7 @@ impl Extremes<'_> {
                     "axiom = F(900000)\nsteps = 1",
                     "axiom = A\nsteps = 14\nA -> F(0.1) L A A",
                 ];
-                Some((*self.dice.of(&rules)).into())
+                Some((*self.dice.pick(&rules)).into())
             }
             "array" => {
                 let few = schema["minItems"].as_u64().unwrap_or(1 + self.dice.next(3) as u64);
@@ -286,7 +287,7 @@ impl Extremes<'_> {
         if whole { format!("{x:.0}").parse().unwrap() } else { json!(x) }
     }
 
-    /// What is required, and one in `n` of the rest.
+    /// Returns the required fields, and one in `n` of the others.
     fn object(&mut self, schema: &Value, n: usize) -> Value {
         let required = schema["required"].as_array().cloned().unwrap_or_default();
         let mut out = Map::new();
@@ -300,7 +301,7 @@ impl Extremes<'_> {
     }
 }
 
-/// As TOML: each field in one line.
+/// Writes TOML: each field in one line.
 fn toml_of(spec: &Value) -> String {
     fn inline(value: &Value) -> String {
         match value {
@@ -317,7 +318,7 @@ fn toml_of(spec: &Value) -> String {
     fields.map(|(k, v)| format!("{k} = {}\n", inline(v))).collect()
 }
 
-/// Runs a command; status, what it said on stderr, and its time. Ended when patience is.
+/// Runs a command and returns its status, its stderr, and its time. Ends it at the time limit.
 fn patiently(dir: &Path, args: &[&str]) -> (Option<i32>, String, Duration) {
     let started = Instant::now();
     let mut command = Command::new(env!("CARGO_BIN_EXE_burgeon"));
@@ -338,7 +339,7 @@ fn patiently(dir: &Path, args: &[&str]) -> (Option<i32>, String, Duration) {
     (status, fs::read_to_string(dir.join("said.txt")).unwrap(), started.elapsed())
 }
 
-/// `BURGEON_EXTREMES=5000` tries more.
+/// Checks extreme specs; `BURGEON_EXTREMES=5000` tries more.
 #[test]
 fn specs_at_the_ends_of_all_ranges_make_a_plant_or_one_line() {
     let dir = folder("extremes");
@@ -349,7 +350,7 @@ fn specs_at_the_ends_of_all_ranges_make_a_plant_or_one_line() {
     let (next, made) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let one = |i: usize, dir: &Path| {
         let mut extremes = Extremes { defs, dice: Dice(i as u64) };
-        // Each method in turn; of all else now and then a field.
+        // Each method in turn; of all other fields now and then one.
         let methods = defs["Method"]["oneOf"].as_array().unwrap();
         let method = &methods[i % methods.len()];
         let mut spec = extremes.object(&schema, 12);

@@ -1,10 +1,11 @@
-//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-cli --test suite MODULE::`.
+//! Integration tests, linked as one program. To run one module: `cargo test -p burgeon-cli --test suite MODULE::`.
 
 #[path = "../../../../crates/base/tests/missing/mod.rs"]
 mod missing;
 
 mod absurd;
 mod bloom;
+mod cloud_files;
 mod clouds;
 mod command;
 mod export;

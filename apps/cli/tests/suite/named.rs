@@ -1,4 +1,5 @@
-//! Files that files name: below the folder of who names them, or with --trust-paths. No pipe is waited for, no device read.
+//! Files that files name: below the folder of the file that names them, or with --trust-paths. No pipe is waited for,
+//! no device read.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::tools;
@@ -10,10 +11,10 @@ use serde_json::Value;
 use tools::{FLOWER, bad, burgeon, folder, good, status};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\n";
-/// How it is allowed, in every refusal.
+/// Remedy in every refusal.
 const WAY_OUT: &str = "allow it with --trust-paths";
 
-/// A glTF of a triangle whose buffer is a file.
+/// Writes a glTF of a triangle whose buffer is a file.
 fn gltf(uri: &str) -> String {
     let head = r#"{"asset": {"version": "2.0"}, "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
@@ -25,7 +26,7 @@ fn triangle() -> Vec<u8> {
     [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// `secret.bin`, `secret.png` and, in the folder `in`, `p.bin` and `t.png` of the same content.
+/// Makes `secret.bin`, `secret.png` and, in the folder `in`, `p.bin` and `t.png` of the same content.
 fn place(test: &str) -> std::path::PathBuf {
     let dir = folder(test);
     fs::create_dir_all(dir.join("in/sub")).unwrap();
@@ -38,14 +39,14 @@ fn place(test: &str) -> std::path::PathBuf {
     dir
 }
 
-/// The command is refused in one line that has all parts, and works with --trust-paths.
+/// Checks that the command is refused in one line with all parts, and works with --trust-paths.
 fn needs_trust(dir: &Path, args: &[&str], parts: &[&str]) {
     let line = bad(dir, args);
     assert!(parts.iter().chain([&WAY_OUT]).all(|p| line.contains(p)), "{args:?} said {line}");
     good(dir, &[args, &["--trust-paths"]].concat());
 }
 
-/// The command is refused in one line that has all parts, with --trust-paths, too; and soon.
+/// Checks that the command is refused in one line with all parts, with --trust-paths, too; and soon.
 fn never(dir: &Path, args: &[&str], parts: &[&str]) {
     let start = Instant::now();
     let line = bad(dir, &[args, &["--trust-paths"]].concat());
@@ -99,7 +100,7 @@ fn materials_and_textures_lie_below_who_names_them() {
     let library = |texture: &str| format!("newmtl wood\nKd 1 0 0\nmap_Kd {texture}\n");
     let has_texture = |more: &[&str]| !materials_of(&dir, "in/a.obj", more)[0]["texture"].is_null();
     write("in/a.obj", &format!("mtllib sub\\a.mtl\n{TRIANGLE}"));
-    // Beside the file of materials, whatever separates the folders; or beside the model, as some programs write it.
+    // Next to the file of materials, with any separator of folders; or next to the model, as some programs write it.
     fs::rename(dir.join("in/t.png"), dir.join("in/sub/t.png")).unwrap();
     write("in/sub/a.mtl", &library("t.png"));
     assert!(has_texture(&[]), "beside the file of materials");
@@ -126,7 +127,7 @@ fn materials_and_textures_lie_below_who_names_them() {
     assert_eq!(materials_of(&dir, "in/a.obj", &["--trust-paths"])[0]["double_sided"], true);
 }
 
-/// It was read anew for each line: 51 s.
+/// It was once read anew for each line: 51 s.
 #[test]
 fn a_library_is_read_once_however_often_it_is_named() {
     let dir = folder("named-often");
@@ -182,7 +183,7 @@ fn meshes_and_leaves_of_a_spec_lie_below_it() {
         write("in/s.toml", &named(file));
         needs_trust(&dir, &args, &["in/s.toml: names", "box.obj"]);
     }
-    // What a mesh names in its turn.
+    // Files that a mesh names in its turn.
     write("in/s.toml", &named("box.obj"));
     write("in/box.obj", &format!("mtllib ../other.mtl\n{}", TRIANGLE.replace("v 0", "v 5")));
     write("other.mtl", "newmtl wood\n");
@@ -196,9 +197,9 @@ fn meshes_and_leaves_of_a_spec_lie_below_it() {
     fs::copy(leaf, dir.join("leaf.csv")).unwrap();
     write("in/s.toml", &format!("{SPEC}[blade]\nfile = \"../leaf.csv\"\n"));
     needs_trust(&dir, &args, &["in/s.toml: names \"../leaf.csv\""]);
-    // What an option names is trusted: somebody typed it.
+    // Files that an option names are trusted: somebody typed them.
     good(&dir, &[&args[..], &["--leaf-template", "leaf.csv"]].concat());
-    // A spec without a folder is one of the folder that one is in.
+    // A spec without a folder lies in the current one.
     let inner = dir.join("in");
     fs::write(inner.join("s.toml"), named("box.obj")).unwrap();
     fs::write(inner.join("box.obj"), TRIANGLE.replace("v 0", "v 5")).unwrap();
@@ -241,7 +242,7 @@ mod unix {
     use std::os::unix::fs::symlink;
     use std::process::Command;
 
-    /// A file whose name is what another one names: a link out of the folder, a pipe, a device.
+    /// Makes a file whose name another one names: a link out of the folder, a pipe, a device.
     fn odd(dir: &Path, name: &str, to: Option<&str>) {
         let path = dir.join("in").join(name);
         let _ = fs::remove_file(&path);
@@ -290,7 +291,7 @@ mod unix {
         symlink("..", dir.join("in/up")).unwrap();
         write("a.gltf", &gltf("up/secret.bin"));
         needs_trust(&dir, &["info", "in/a.gltf"], &["up/secret.bin", "a link that leads out"]);
-        // One that stays inside is as good as a file, and the model itself may be reached by a link.
+        // A link that stays inside is as good as a file, and the model itself may be reached by a link.
         symlink("p.bin", dir.join("in/inside.bin")).unwrap();
         write("a.gltf", &gltf("inside.bin"));
         good(&dir, &["info", "in/a.gltf"]);
@@ -372,7 +373,7 @@ fn table(dir: &Path, name: &str, rows: u32, plants: u32) {
     fs::write(dir.join(name), text).unwrap();
 }
 
-/// 12,000 rows took half a minute, or two where they were one series.
+/// 12,000 rows once took half a minute, or two minutes as one series.
 #[test]
 fn growth_tables_take_time_in_proportion_to_their_rows_or_are_refused() {
     let dir = folder("named-tables");

@@ -1,5 +1,5 @@
-//! Every option of every command in every kind of use: it changes what comes out, or it is an error that says who
-//! uses it. None is ignored.
+//! Every option of every command in every kind of use: it changes the output, or it is an error that names its users.
+//! None is ignored.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::tools;
@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use tools::{FLOWER, folder, good, status};
 
-/// Steer how a command runs or talks, whatever it makes; -o is in each use.
+/// Options that steer how a command runs or reports, whatever it makes; -o is in each use.
 const RUNNING: [&str; 11] = [
     "help",
     "version",
@@ -26,7 +26,7 @@ const RUNNING: [&str; 11] = [
     "trust-paths",
 ];
 
-/// A value that is not the default, for each option that takes one.
+/// A value other than the default, for each option that takes one.
 const VALUES: &[(&str, &str)] = &[
     ("age", "1"),
     ("at", "2,0"),
@@ -45,6 +45,7 @@ const VALUES: &[(&str, &str)] = &[
     ("dates", "dmy"),
     ("day", "0.3"),
     ("days", "1,2"),
+    ("dbh", "0.1"),
     ("density", "3"),
     ("depth", "0.2"),
     ("detail", "3"),
@@ -148,7 +149,7 @@ const VALUES: &[(&str, &str)] = &[
     ("show", "oak"),
 ];
 
-/// Kinds of use: a command that works, to which each of its options is added.
+/// Kinds of use: a working command, to which each of its options is added.
 const USES: &[&[&str]] = &[
     &["sketch", "rose.svg", "-o", "o.glb", "--no-textures"],
     &["sketch", "rose.svg", "-o", "o.mtg"],
@@ -197,8 +198,8 @@ const USES: &[&[&str]] = &[
     &["info", "rose.svg"],
 ];
 
-/// Options that work on such input, but find nothing in this one that they could change: no contour to fill, no branch
-/// beside the stem, one plant, veins as thick as the sides of the finest need.
+/// Options that apply to such input, but have nothing to change in this one: no contour to fill, no branch other than
+/// the stem, one plant, veins as thick as the sides of the finest need.
 const NOTHING_TO_STEER: &[(&str, &[&str])] = &[
     ("one.burgeon", &["branch-depth", "density", "tropism", "phototropism", "gravity", "sides", "plant"]),
     // From the front at eye level the ground, and a shadow on it, is a line.
@@ -225,10 +226,10 @@ kill_m = 0.3
 const BOX: &str = "v 0.2 0.7 -1\nv 2 0.7 -1\nv 2 0.7 1\nv 0.2 0.7 1\nv 0.2 2 -1\nv 2 2 -1\nv 2 2 1\nv 0.2 2 1\n\
                    f 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
 
-/// Files for all uses.
+/// Writes the files for all uses.
 fn inputs(dir: &Path) {
     let write = |name: &str, text: &str| fs::write(dir.join(name), text).unwrap();
-    // A branch with a contour that twigs fill: what density, tropism and their like are for.
+    // A branch with a contour that twigs fill, for density, tropism and similar options.
     let contour = r##"<path id="branch-contour" fill="none" stroke="#000" d="M101 270C130 262 160 262 176 274C160 286 130 284 101 272"/></svg>"##;
     write("rose.svg", &FLOWER.replace("</svg>", contour));
     write("classes.csv", "1,axis\n");
@@ -250,7 +251,7 @@ fn inputs(dir: &Path) {
     write("stem.xyz", &crate::words::stems(&[(0.0, 3.0), (2.0, 2.4)]));
     let points: Vec<String> = (0..200)
         .map(|i| {
-            // Even steps of a number that is no fraction fill a square.
+            // Even steps of an irrational number fill a square.
             let [x, z] = [0.618, 0.414].map(|step: f64| (f64::from(i) * step).fract() - 0.5);
             format!("{x} {} {z}", 0.3 + f64::from(i % 40) * 0.02)
         })
@@ -261,7 +262,7 @@ fn inputs(dir: &Path) {
         let sheet = (0..1200).map(|i| {
             let (u, v) = (f64::from(i % 60) / 59.0, f64::from(i / 60) / 19.0 - 0.5);
             let half = 0.12 * u * (1.0 - u) + 0.002;
-            // The longer one leans over: control points that turn with it take another way.
+            // The longer one leans: control points that turn with it take another path.
             let (s, c) = if bend > 0.02 { (0.6, 0.8) } else { (0.0, 1.0) };
             let (y, z) = (length * u, bend * u * u);
             format!("{:.5} {:.5} {:.5}", 2.0 * v * half, c * y - s * z, s * y + c * z)
@@ -273,7 +274,7 @@ fn inputs(dir: &Path) {
     let edits = r#"{"schema": "burgeon.edits/1", "edits": [{"op": "rotate", "axis": {"path": [0]}, "turn": {"about": [0, 0, 1], "degrees": 30}}]}"#;
     write("edits.json", edits);
     let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/leaves/leaf1.csv");
-    // Without the lines that say thickness, unit and axis, which win over the options.
+    // Without the lines that give thickness, unit and axis, which override the options.
     let text = fs::read_to_string(leaf).unwrap();
     let rows: Vec<&str> = text.lines().filter(|l| !l.starts_with('#')).collect();
     write("leaf.csv", &rows.join("\n"));
@@ -281,7 +282,7 @@ fn inputs(dir: &Path) {
     let rays = fs::read_to_string(dir.join("rays.csv")).unwrap();
     let rows: Vec<&str> = rays.lines().filter(|l| !l.starts_with('#')).collect();
     write("rays.csv", &rows.join("\n"));
-    // A midrib of 101 nodes with eight pairs of side veins, as they lie on a scanner.
+    // A midrib of 101 nodes with eight pairs of side veins, as on a scanner.
     let mut nodes: Vec<String> =
         (0..=100).map(|k| format!("[500,{},{}]", 10 * k, 6.0 - 0.04 * f64::from(k))).collect();
     let mut edges: Vec<String> = (0..100).map(|k| format!("[{k},{}]", k + 1)).collect();
@@ -306,7 +307,7 @@ fn inputs(dir: &Path) {
     fs::remove_file(dir.join("x.glb")).unwrap();
 }
 
-/// The options that a command's help lists, and whether a value follows.
+/// Returns the options that a command's help lists, and whether a value follows.
 fn listed(dir: &Path, use_: &[&str]) -> Vec<(String, bool)> {
     let words = if ["bloom", "species"].contains(&use_[0]) { 2 } else { 1 };
     let help = good(dir, &[&use_[..words], &["--help"]].concat());
@@ -320,7 +321,7 @@ fn listed(dir: &Path, use_: &[&str]) -> Vec<(String, bool)> {
     help.lines().take_while(|l| !l.starts_with("Examples")).filter_map(option).collect()
 }
 
-/// What a command left: its files and what it printed, without times.
+/// Returns the results of a command: its files and what it printed, without times.
 fn made(dir: &Path, scratch: &Path, args: &[&str]) -> (i32, String, BTreeMap<String, Vec<u8>>) {
     let _ = fs::remove_dir_all(scratch);
     fs::create_dir_all(scratch).unwrap();
@@ -368,7 +369,7 @@ fn forget_times(value: &mut Value) {
     }
 }
 
-/// The options that a use ignores.
+/// Returns the options that a use ignores.
 fn ignored(dir: &Path, scratch: &Path, use_: &[&str]) -> Vec<String> {
     let (code, said, plain) = made(dir, scratch, use_);
     assert_eq!(code, 0, "{use_:?}: {said}");
@@ -384,7 +385,7 @@ fn ignored(dir: &Path, scratch: &Path, use_: &[&str]) -> Vec<String> {
         }
         let species = use_[0] == "scan" && option == "leaves";
         let value = VALUES.iter().find(|(name, _)| *name == option).map(|(_, value)| *value);
-        // The files of the field have +Z up already, and scans of trees.
+        // Files of structure have +Z up already, and so have scans of trees.
         let field = use_[0] == "scan"
             || use_.iter().any(|word| word.ends_with(".mtg") || word.ends_with(".opf") || *word == "--qsm");
         let value = if field && option == "up" { Some("y") } else { value };
@@ -425,7 +426,7 @@ fn no_option_is_ignored() {
     assert!(found.is_empty(), "ignored:\n{}", found.join("\n"));
 }
 
-/// A project of one drawing and one of several plants.
+/// Makes a project of one drawing and one of several plants.
 fn projects(dir: &Path) {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/projects");
     fs::copy(fixtures.join("version-1.burgeon"), dir.join("one.burgeon")).unwrap();

@@ -1,4 +1,4 @@
-//! `burgeon replay` as other programs call it: a record done again, its film, and bad input.
+//! `burgeon replay` as other programs call it: a record replayed, its film, and bad input.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::tools;
@@ -7,7 +7,7 @@ use std::fs;
 
 use tools::{bad, folder, good, json};
 
-/// A project and a hand that moves before its plant for so many steps, a fifth of a second apart.
+/// Writes a record: a project and a hand that moves in front of its plant for `steps` steps, a fifth of a second apart.
 pub(crate) fn record(steps: u32) -> String {
     let project = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-6.burgeon");
     let mut text = format!(
@@ -42,7 +42,7 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// Width and height of the pictures of a film, and how long each is seen, hundredths of a second.
+/// Returns width, height and duration in hundredths of a second of the pictures of a film.
 fn pictures(film: &[u8]) -> Vec<(u16, u16, u16)> {
     let word = |at: usize| u16::from_le_bytes([film[at], film[at + 1]]);
     assert_eq!((&film[..6], film.last()), (&b"GIF89a"[..], Some(&0x3b)), "a whole film");

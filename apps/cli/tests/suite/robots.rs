@@ -1,4 +1,4 @@
-//! Plants as bodies and joints: files of every maker, and what is refused.
+//! Plants as bodies and joints: files of every maker, and refusals.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::BTreeSet;
@@ -9,14 +9,14 @@ use crate::tools::{FLOWER, bad, burgeon, folder, good, names, status};
 
 const TOMATO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/illustrations/01_tomato.svg");
 
-/// The values of an attribute, in the order of the file.
+/// Returns the values of an attribute, in the order of the file.
 fn values<'a>(text: &'a str, tag: &str, attribute: &str) -> Vec<&'a str> {
     let (open, key) = (format!("<{tag} "), format!(" {attribute}=\""));
     let lines = text.lines().filter(|line| line.trim_start().starts_with(&open));
     lines.filter_map(|line| line.split_once(&key)?.1.split('"').next()).collect()
 }
 
-/// Every mesh that a file names lies beside it as a binary STL with triangles.
+/// Checks that every mesh that a file names lies next to it as a binary STL with triangles.
 fn check_meshes(dir: &Path, text: &str, (tag, attribute): (&str, &str)) {
     let files = values(text, tag, attribute);
     assert!(!files.is_empty(), "no mesh");
@@ -27,8 +27,8 @@ fn check_meshes(dir: &Path, text: &str, (tag, attribute): (&str, &str)) {
     }
 }
 
-/// A number of the JSON report about a robot.
-fn told(report: &serde_json::Value, field: &str) -> f64 {
+/// Returns a number of the JSON report about a robot.
+fn robot_number(report: &serde_json::Value, field: &str) -> f64 {
     report["items"][0]["robot"][field].as_f64().unwrap()
 }
 
@@ -41,7 +41,7 @@ fn a_drawn_tomato_keeps_the_fruits_that_outweigh_its_thin_stems() {
     let hinges = values(&text, "joint", "stiffness");
     assert!((2..=200).contains(&hinges.len()), "{} hinges", hinges.len());
     assert!(hinges.iter().all(|k| k.parse::<f64>().unwrap() > 0.0));
-    // Fruits of 0.15 kg on stems of 0.00002 kg: in a weld they would fall off by themselves.
+    // Fruits of 0.15 kg on stems of 0.00002 kg: welded, they would fall off by themselves.
     assert!(values(&text, "weld", "body2").is_empty() && !text.contains("freejoint"));
     let said = String::from_utf8(out.stderr).unwrap();
     assert!(
@@ -50,7 +50,10 @@ fn a_drawn_tomato_keeps_the_fruits_that_outweigh_its_thin_stems() {
     );
     let report = serde_json::from_slice(&fs::read(dir.join("r.json")).unwrap()).unwrap();
     let kilograms: f64 = values(&text, "inertial", "mass").iter().map(|m| m.parse::<f64>().unwrap()).sum();
-    assert!((kilograms / told(&report, "mass_kg") - 1.0).abs() < 1e-6 && kilograms > 0.5, "{kilograms} kg");
+    assert!(
+        (kilograms / robot_number(&report, "mass_kg") - 1.0).abs() < 1e-6 && kilograms > 0.5,
+        "{kilograms} kg"
+    );
     check_meshes(&dir, &text, ("mesh", "file"));
 }
 
@@ -89,6 +92,33 @@ fn makers_write_both_files_and_the_same_bytes_each_time() {
 }
 
 #[test]
+fn usd_with_physics_has_the_bodies_springs_and_masses_of_the_other_files() {
+    let dir = folder("robots-usd");
+    let asked = ["grow", "hazel", "--age", "4", "-q", "--report", "r.json", "-o"];
+    good(&dir, &[&asked[..], &["hazel.xml"]].concat());
+    good(&dir, &[&asked[..], &["hazel.physics.usda", "--for", "isaac"]].concat());
+    let (mjcf, usd) = (dir.join("hazel.xml"), dir.join("hazel.physics.usda"));
+    let (mjcf, usd) = (fs::read_to_string(mjcf).unwrap(), fs::read_to_string(usd).unwrap());
+    let numbers = |text: &str, key: &str| -> Vec<f64> {
+        text.lines().filter_map(|line| line.split_once(key)?.1.trim().parse().ok()).collect()
+    };
+    let mass: f64 = numbers(&usd, "physics:mass = ").iter().sum();
+    let wanted: f64 = values(&mjcf, "inertial", "mass").iter().map(|m| m.parse::<f64>().unwrap()).sum();
+    assert!((mass / wanted - 1.0).abs() < 1e-7, "{mass} of {wanted}");
+    let springs = numbers(&usd, "physics:stiffness = ");
+    let radians: Vec<f64> = values(&mjcf, "joint", "stiffness").iter().map(|k| k.parse().unwrap()).collect();
+    assert_eq!(springs.len(), radians.len());
+    let degree = std::f64::consts::PI / 180.0;
+    let sum = |all: &[f64]| all.iter().sum::<f64>();
+    assert!((sum(&springs) / (sum(&radians) * degree) - 1.0).abs() < 1e-6, "newton metres a degree");
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(dir.join("r.json")).unwrap()).unwrap();
+    assert!(report["for"]["set"].to_string().contains("springy joints"), "{}", report["for"]);
+    let refused = bad(&dir, &["grow", "hazel", "-o", "x.physics.usda", "--for", "unreal"]);
+    assert!(refused.contains(".physics.usda"), "{refused}");
+    assert!(names(&dir).iter().all(|name| !name.contains("physics-")), "meshes are in the file");
+}
+
+#[test]
 fn the_report_says_what_was_assumed_and_only_a_guess_is_warned_of() {
     let dir = folder("robots-said");
     let out = burgeon(&dir, &["grow", "spruce", "-o", "spruce.xml", "--report", "r.json"]);
@@ -97,8 +127,8 @@ fn the_report_says_what_was_assumed_and_only_a_guess_is_warned_of() {
     assert!(!said.contains("GPa"), "{said}");
     let report: serde_json::Value = serde_json::from_slice(&fs::read(dir.join("r.json")).unwrap()).unwrap();
     assert_eq!(report["items"][0]["robot"]["wood"], "softwood");
-    assert_eq!(told(&report, "modulus_pa"), 8e9);
-    assert!(told(&report, "mass_kg") > 10.0 && told(&report, "lowest_hz") > 0.0);
+    assert_eq!(robot_number(&report, "modulus_pa"), 8e9);
+    assert!(robot_number(&report, "mass_kg") > 10.0 && robot_number(&report, "lowest_hz") > 0.0);
     // A trunk of fibres in soft tissue.
     let out = burgeon(&dir, &["grow", "palm", "-o", "palm.xml"]);
     assert_eq!(status(&out), 0);

@@ -1,4 +1,4 @@
-//! Scans of trees and plots: what is not plausible is told with the option that helps, and a plot becomes its trees.
+//! Scans of trees and plots: implausible values are reported with the option that helps, and a plot becomes its trees.
 #![expect(
     clippy::unwrap_used,
     clippy::disallowed_methods,
@@ -14,7 +14,7 @@ use crate::tools;
 use serde_json::Value;
 use tools::{bad, folder, good};
 
-/// Points of a cone from `a` to `b`, some millimetres apart and seen all around.
+/// Adds points of a cone from `a` to `b`, some millimetres apart and seen all around.
 fn cone(out: &mut Vec<[f64; 3]>, a: [f64; 3], b: [f64; 3], [r, s]: [f64; 2]) {
     let d = [0, 1, 2].map(|k| b[k] - a[k]);
     let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -39,7 +39,7 @@ fn cone(out: &mut Vec<[f64; 3]>, a: [f64; 3], b: [f64; 3], [r, s]: [f64; 2]) {
     }
 }
 
-/// A tree of 5 m with eight boughs, at a place.
+/// Makes a tree of 5 m with eight boughs, at a place.
 fn tree([x, y]: [f64; 2]) -> Vec<[f64; 3]> {
     let mut out = vec![];
     cone(&mut out, [x, y, 0.0], [x, y, 5.0], [0.09, 0.012]);
@@ -85,7 +85,7 @@ fn a_scan_that_is_not_plausible_says_which_option_helps() {
     // Metres taken for millimetres.
     let error = bad(&at, &["scan", "tree.xyz", "--unit", "mm", "-o", "x.glb"]);
     assert!(error.contains("--unit m") && !at.join("x.glb").exists(), "{error}");
-    // A gap in the trunk: bridged and told; or left, and told with the gap that is there.
+    // A gap in the trunk: bridged and reported; or left, and reported with its size.
     let gap: Vec<[f64; 3]> = whole.into_iter().filter(|p| !(1.0..1.6).contains(&p[2])).collect();
     write(&at, "gap.xyz", &[gap, ground(2.5)]);
     let told = report(&at, &["scan", "gap.xyz", "-o", "gap.glb"]);
@@ -105,7 +105,7 @@ fn a_scan_that_is_not_plausible_says_which_option_helps() {
 fn a_plot_becomes_its_trees_and_goes_on_where_it_was_stopped() {
     let at = folder("scan-plot");
     write(&at, "plot.xyz", &[tree([0.0, 0.0]), tree([2.5, 0.3]), ground(4.0)]);
-    // Never one tree in silence.
+    // Never one tree without a warning.
     let told = report(&at, &["scan", "plot.xyz", "-o", "one.glb"]);
     let warnings = told["items"][0]["warnings"].to_string();
     assert!(
@@ -125,13 +125,13 @@ fn a_plot_becomes_its_trees_and_goes_on_where_it_was_stopped() {
     for name in ["tree-001.glb", "tree-001.csv", "tree-002.glb", "tree-002.csv", "map.png"] {
         assert!(at.join("plot").join(name).is_file(), "{name}");
     }
-    // One is gone: it alone is made again, with the same bytes.
+    // One file is missing: only it is made again, with the same bytes.
     let first = fs::read(at.join("plot/tree-001.glb")).unwrap();
     fs::remove_file(at.join("plot/tree-001.glb")).unwrap();
     let told = report(&at, &all);
     assert_eq!((told["ok"].as_u64(), told["plot"]["kept"].as_u64()), (Some(2), Some(1)), "{told}");
     assert_eq!(fs::read(at.join("plot/tree-001.glb")).unwrap(), first);
-    // With other options all are made again.
+    // With other options, all are made again.
     let told = report(&at, &[&all[..], &["--gap", "0.3"]].concat());
     assert_eq!(told["plot"]["kept"].as_u64(), Some(0));
     let error = bad(&at, &["scan", "plot.xyz", "--all", "-o", "plot.glb"]);
@@ -165,7 +165,7 @@ fn a_law_says_what_there_is_on_any_day_and_a_table_which_unit_was_taken() {
         far["extrapolated"].as_bool().unwrap() && told["warnings"].to_string().contains("beyond"),
         "{told}"
     );
-    // No unit anywhere: which was taken is said.
+    // No unit anywhere: the assumed one is reported.
     fs::write(at.join("b.csv"), table.replace("Height (cm)", "height")).unwrap();
     let told = report(&at, &["bloom", "fit", "b.csv", "-o", "b.json"]);
     assert!(
@@ -173,7 +173,7 @@ fn a_law_says_what_there_is_on_any_day_and_a_table_which_unit_was_taken() {
         "{}",
         told["items"][0]["warnings"]
     );
-    // Three days say that they determine nothing.
+    // A warning says that three days determine nothing.
     fs::write(at.join("c.tsv"), "day\tsize_mm\n0\t20\n1\t22\n5\t31\n").unwrap();
     let told = good(&at, &["bloom", "fit", "c.tsv", "-o", "c.json"]);
     assert!(told.contains("3 days determine no law") && told.contains("best guess"), "{told}");

@@ -116,7 +116,7 @@ fn a_plant_of_a_project_is_chosen_shaped_and_saved() {
     assert!(fs::metadata(f.join("bush.glb")).unwrap().len() > 1000);
     let by_number = json(&[&shape[..], &["--plant", "2", "--png", "bush.png"]].concat());
     assert_eq!(by_number["items"][0]["digest"], item["digest"]);
-    // The project's own seed, unless another is asked for; the saved project makes the same plant of it.
+    // The project's own seed, unless another is given; the saved project makes the same plant of it.
     assert_eq!(by_name["seed"], 3);
     let again =
         json(&["shape", "shaped.burgeon", "--plant", "bush", "--report", "again.json", "--json", "--list"]);
@@ -126,14 +126,14 @@ fn a_plant_of_a_project_is_chosen_shaped_and_saved() {
     assert!(digests.contains(&&item["digest"]), "the scene has the same plant");
     let other = json(&[&shape[..], &["--plant", "bush", "--seed", "8", "--png", "x.png"]].concat());
     assert_ne!(other["items"][0]["digest"], item["digest"]);
-    // Wind only where it is asked for.
+    // Wind only where it was requested.
     let blown = |name: &str| -> bool {
         let info = json(&["info", name, "--json"]);
         info["model"]["parts"].as_array().unwrap().iter().all(|p| p["wind"] == true)
     };
     json(&[&shape[..], &["--plant", "bush", "--wind", "-o", "wind.glb"]].concat());
     assert!(blown("wind.glb") && !blown("bush.glb"));
-    // One more edit comes after those that are there.
+    // One more edit comes after the existing ones.
     let more = json(&[
         "shape",
         "shaped.burgeon",
@@ -220,9 +220,9 @@ fn flowers_and_leaf_shoots_take_edits_and_every_plant_has_levels_of_detail() {
         assert!(failed.contains("none.json") && failed.contains("its edit could not be done"), "{failed}");
     }
     assert!(!f.join("never.glb").exists());
-    // The same edit on every day: an opening still has one set of triangles.
+    // The same edit on every day: an opening flower still has one set of triangles.
     json(&["bloom", "run", "rose", "--edits", "lean.json", "--frames", "3", "-o", "opening.glb"]);
-    // What a drawing became is a project with the edit.
+    // A drawing becomes a project with the edit.
     let again = json(&["shape", "drawn.burgeon", "--list"]);
     assert_eq!(again["items"][0]["edits"][0]["done"], true);
 }

@@ -1,4 +1,4 @@
-//! Whatever a command does, it ends soon after it is asked to, and leaves nothing half-written.
+//! Whatever a command does, it ends soon after a request, and leaves nothing half-written.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -17,16 +17,16 @@ use nix::unistd::Pid;
 use crate::{missing, replay, tools};
 use tools::{burgeon, folder, good, names, status};
 
-/// At how many moments each command is interrupted, unless `BURGEON_INTERRUPTS` says another number.
+/// Number of moments at which each command is interrupted, unless `BURGEON_INTERRUPTS` gives another.
 const MOMENTS: usize = 5;
-/// Commands at a time.
+/// Number of commands at a time.
 const AT_ONCE: usize = 2;
-/// A command ends within this time, beside what a busy machine takes to start one.
+/// Time within which a command ends, in addition to the time that a busy machine takes to start one.
 const SOON: Duration = Duration::from_secs(1);
-/// No moment is later: what takes longer does the same for long.
+/// Latest moment: a command that takes longer does the same for a long time.
 const LATEST: Duration = Duration::from_millis(1500);
 
-/// What is interrupted: arguments, of which `in/` names inputs. All files are written below `out`.
+/// Commands that are interrupted: arguments, in which `in/` names inputs. All files are written below `out`.
 const COMMANDS: [&[&str]; 20] = [
     &["sketch", "in/sample.svg", "-o", "out/s.obj", "--png", "out/s.png", "--report", "out/s.json"],
     &["sketch", "in/a.svg", "in/b.svg", "in/c.svg", "in/d.svg", "in/e.svg", "-o", "out/", "--png", "out/"],
@@ -58,12 +58,12 @@ const COMMANDS: [&[&str]; 20] = [
     &["presets", "--show", "oak"],
     &["man", "out"],
     &["completions", "bash"],
-    // Nothing comes from standard input, and nobody reads what goes into a pipe.
+    // Nothing comes from standard input, and nobody reads the pipe.
     &["info", "-", "--report", "out/i.json"],
     &["convert", "in/tree.glb", "-o", "in/pipe.stl"],
 ];
 
-/// Inputs of all commands.
+/// Writes the inputs of all commands.
 fn inputs(dir: &Path) {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
     fs::create_dir_all(dir.join("page")).unwrap();
@@ -105,13 +105,13 @@ fn start(dir: &Path, args: &[&str]) -> Child {
     command.spawn().unwrap()
 }
 
-/// Files below `out`, with their lengths.
+/// Returns the files below `out`, with their lengths.
 fn made(dir: &Path) -> BTreeMap<String, u64> {
     let out = dir.join("out");
     names(&out).into_iter().map(|name| (name.clone(), fs::metadata(out.join(name)).unwrap().len())).collect()
 }
 
-/// Waits for the end; how long it took.
+/// Waits for the end and returns its time.
 fn ended(child: &mut Child) -> (ExitStatus, Duration) {
     let begun = Instant::now();
     loop {
@@ -125,7 +125,7 @@ fn ended(child: &mut Child) -> (ExitStatus, Duration) {
     }
 }
 
-/// How long a command takes, at most [`LATEST`], and what it makes.
+/// Returns the duration of a command, at most [`LATEST`], and its files.
 fn whole(dir: &Path, args: &[&str]) -> (Duration, BTreeMap<String, u64>) {
     let mut child = start(dir, args);
     let begun = Instant::now();
@@ -142,7 +142,7 @@ fn whole(dir: &Path, args: &[&str]) -> (Duration, BTreeMap<String, u64>) {
     (begun.elapsed().min(LATEST), made(dir))
 }
 
-/// What one process takes to start and end.
+/// Returns the time that a process takes to start and end.
 fn starting(dir: &Path) -> Duration {
     let begun = Instant::now();
     good(dir, &["--version"]);
@@ -152,7 +152,7 @@ fn starting(dir: &Path) -> Duration {
 fn interrupt(dir: &Path, args: &[&str], whole: &BTreeMap<String, u64>, (after, signal): (Duration, Signal)) {
     let what = format!("{args:?}, {signal} after {after:?}");
     let mut child = start(dir, args);
-    // Somebody reads what it says: more than a pipe holds would keep it waiting.
+    // Somebody reads its output: more than a pipe holds would block it.
     let mut said = child.stdout.take().unwrap();
     let reader = std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
     std::thread::sleep(after);
@@ -171,19 +171,19 @@ fn interrupt(dir: &Path, args: &[&str], whole: &BTreeMap<String, u64>, (after, s
             let told = said.lines().filter(|l| l.starts_with("error: stopped; ")).count();
             assert_eq!(told, usize::from(args[0] != "studio"), "{what}: {said}");
         }
-        // So soon that the program had not begun.
+        // So early that the program had not begun.
         None => assert!(status.signal() == Some(signal as i32) && now.is_empty(), "{what}: {now:?}"),
         Some(other) => panic!("{what}: status {other}: {said}"),
     }
     if args.contains(&"out/") {
-        // Of a batch each drawing is whole.
+        // In a batch, each drawing is whole.
         let of =
             |end: &str| now.keys().filter_map(|n| n.strip_suffix(end)).map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(of(".glb"), of(".png"), "{what}");
     } else {
         assert!(now.is_empty() || now.len() == whole.len(), "{what}: {now:?}");
     }
-    // Reports tell times.
+    // Reports contain times.
     let is_same = |(name, bytes): (&String, &u64)| name.ends_with(".json") || whole.get(name) == Some(bytes);
     assert!(now.iter().all(is_same), "{what}: {now:?}, not {whole:?}");
 }
@@ -216,7 +216,7 @@ fn every_command_ends_soon_after_it_is_asked_to() {
     });
 }
 
-/// The limits that a shell sets: of processor time, and of the size of files.
+/// Limits that a shell sets: of processor time, and of the size of files.
 #[test]
 fn limits_of_the_system_leave_no_drafts() {
     let dir = folder("signals-limits");
@@ -240,7 +240,7 @@ fn limits_of_the_system_leave_no_drafts() {
     assert_eq!(names(&dir), Vec::<String>::new());
 }
 
-/// What nobody gets is no success; a reader that went away has what it wanted.
+/// Output that nobody receives is not a success; a reader that closed the pipe has what it needs.
 #[test]
 fn a_full_disk_behind_standard_output_is_an_error() {
     let dir = folder("signals-full");

@@ -1,4 +1,4 @@
-//! Measured trees to a species, and trees of it.
+//! Measured trees made into a species, and trees of it.
 #![expect(
     clippy::unwrap_used,
     clippy::disallowed_methods,
@@ -12,11 +12,11 @@ use std::fs;
 use serde_json::Value;
 use tools::{bad, burgeon, folder, good, json};
 
-/// Numbers from 0 to 1 that follow from a seed.
+/// Pseudo-random numbers from 0 to 1 that follow from a seed.
 struct Numbers(u64);
 
 impl Numbers {
-    /// Seeds that follow one another give numbers that do not.
+    /// Successive seeds give unrelated numbers.
     fn new(seed: u64) -> Self {
         let mixed = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         Self((mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9))
@@ -30,7 +30,7 @@ impl Numbers {
     }
 }
 
-/// A table of cylinders, which is written axis by axis.
+/// A table of cylinders, written axis by axis.
 #[derive(Default)]
 struct Table {
     rows: String,
@@ -40,9 +40,9 @@ struct Table {
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// Where a direction goes that leaves another by an angle, at an azimuth about it.
+/// Returns the direction that leaves another by an angle, at an azimuth about it.
 fn away([x, y, z]: [f64; 3], degrees: f64, azimuth: f64) -> [f64; 3] {
-    // Two directions across the first: any that is not along it gives one.
+    // Two directions across the first: any direction not parallel to it gives one.
     let other = if z.abs() < 0.9 { UP } else { [1.0, 0.0, 0.0] };
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -58,7 +58,7 @@ fn away([x, y, z]: [f64; 3], degrees: f64, azimuth: f64) -> [f64; 3] {
 }
 
 impl Table {
-    /// An axis of ten cylinders that tapers to a third; the number of each cylinder.
+    /// Adds an axis of ten cylinders that tapers to a third; returns the number of each cylinder.
     fn axis(
         &mut self,
         foot: [f64; 3],
@@ -85,7 +85,7 @@ impl Table {
         all
     }
 
-    /// A trunk of 5 to 7 m with nine boughs at 40 to 70 degrees, each of which bears three twigs.
+    /// Adds a trunk of 5 to 7 m with nine boughs at 40 to 70 degrees, each of which bears three twigs.
     fn tree(&mut self, n: &mut Numbers, at: f64) {
         let length = n.between(5.0, 7.0);
         let radius = length * n.between(0.014, 0.018);
@@ -110,7 +110,7 @@ impl Table {
 
 const HEAD: &str = "radius,start_x,start_y,start_z,end_x,end_y,end_z,parent,branch\n";
 
-/// A table of trees that stand 20 m apart.
+/// Writes a table of trees that stand 20 m apart.
 pub(crate) fn trees(count: usize, seed: u64) -> String {
     let (mut table, mut numbers) = (Table::default(), Numbers::new(seed));
     (0..count).for_each(|k| table.tree(&mut numbers, 20.0 * k as f64));
@@ -150,23 +150,23 @@ fn trees_of_a_fitted_species_branch_as_those_that_were_kept_out() {
         assert!((low..high).contains(&median), "{r}");
         let [a, b] = [0, 1].map(|k| r["median_interval"][k].as_f64().unwrap());
         assert!(a <= median && median <= b, "{r}");
-        // Seven are asked at once: of trees that were not fitted chance gives one below 0.007 in 20 runs.
+        // Seven tests are made at once: for trees that were not fitted, chance gives one below 0.007 in 20 runs.
         for (lot, least) in [("fitted", 0.05), ("kept_out", 0.007)] {
             assert!(r[lot]["p"].as_f64().unwrap() > least, "{lot}: {r}");
         }
     }
-    // All axes of these trees taper alike: of one value there is no distribution, but it comes back.
+    // All axes of these trees taper alike: a single value has no distribution, but it is reproduced.
     let taper = row(&report, 1, "taper");
     let medians = [0, 1].map(|k| taper["fitted"]["medians"][k].as_f64().unwrap());
     assert!((medians[0] / medians[1] - 1.0).abs() < 0.01, "{taper}");
-    // Boughs are as far apart as they were: the rules go on from each to the next.
+    // Boughs have their original distances: the rules continue from each to the next.
     let apart = row(&report, 0, "internode");
     let medians = &apart["fitted"]["medians"];
     assert!((medians[0].as_f64().unwrap() / medians[1].as_f64().unwrap() - 1.0).abs() < 0.1, "{apart}");
     assert!(said.contains("species-") || said.contains("neither is fitted"), "{said}");
     let png = fs::read(f.join("my-oak.png")).unwrap();
     assert!(png.starts_with(b"\x89PNG") && png.len() > 3000, "{}", png.len());
-    // It is a species as others are.
+    // It is a species like others.
     good(&f, &["grow", "my-oak.toml", "-o", "oak.qsm.csv", "--seed", "3"]);
     good(&f, &["grow", "my-oak.toml", "-o", "oak.glb", "--no-textures", "--detail", "0.2"]);
     // The same again, on one thread.

@@ -1,4 +1,4 @@
-//! Plants of files of structure, through the commands that take plants; growth tables with groups, and of workbooks.
+//! Plants of files of structure, through the commands that accept plants; growth tables with groups, and of workbooks.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::tools;
@@ -67,12 +67,12 @@ fn what_a_file_does_not_say_is_asked_for() {
     fs::write(f.join("thick.swc"), "1 1 0 0 0 500 -1\n2 1 0 0 900 300 1\n").unwrap();
     let out = burgeon(&f, &["info", "thick.swc", "--in-unit", "cm"]);
     assert!(String::from_utf8_lossy(&out.stdout).contains("--thickness-unit"), "10 m thick: {out:?}");
-    // Two plants: which one?
+    // Two plants: the number is missing.
     fs::write(f.join("two.swc"), "1 1 0 0 0 1 -1\n2 1 0 0 9 1 1\n3 1 50 0 0 1 -1\n4 1 50 0 8 1 3\n").unwrap();
     assert!(bad(&f, &["convert", "two.swc", "-o", "x.mtg"]).contains("--plant 1 to --plant 2"));
     good(&f, &["convert", "two.swc", "-o", "x.mtg", "--plant", "2"]);
     assert!(bad(&f, &["convert", "two.swc", "-o", "y.mtg", "--plant", "3"]).contains("from 1 to 2"));
-    // Options of such files are for nothing else, and everything else is edited.
+    // Options of such files apply to nothing else, and everything else needs edits.
     assert!(
         bad(&f, &["shape", "oak", "--list", "--leaves", "birch"])
             .contains("--leaves is for files of structure")
@@ -85,7 +85,7 @@ fn what_a_file_does_not_say_is_asked_for() {
     assert!(bad(&f, &["sketch", "two.swc", "-o", "x.glb"]).contains("burgeon shape"));
 }
 
-/// Heights of twelve plants by treatment, in years; six of them grow to about half as much.
+/// Writes heights of twelve plants by treatment, in years; six of them grow to about half as much.
 fn trial(separator: char) -> String {
     let mut text = format!("Seed{separator}treatment{separator}Age (years){separator}height_cm\n");
     for plant in 0..12_u32 {

@@ -1,4 +1,4 @@
-//! The time that a command tells is the time that it takes.
+//! The time that a command reports is the time that it takes.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-/// Strokes that lie on one another, as InkML: what no stage timed took nine tenths of the time.
+/// Strokes that lie on one another, as InkML: stages that were not timed took nine tenths of the time.
 #[test]
 fn the_stages_of_a_drawing_are_its_whole_time() {
     let at = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stages");

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// A folder of its own for a test, emptied first.
+/// Returns a folder for one test, emptied first.
 pub(crate) fn folder(test: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&path);
@@ -23,14 +23,14 @@ pub(crate) fn status(out: &Output) -> i32 {
     out.status.code().unwrap()
 }
 
-/// The output of a command that must succeed.
+/// Returns the output of a command that must succeed.
 pub(crate) fn good(folder: &Path, args: &[&str]) -> String {
     let out = burgeon(folder, args);
     assert_eq!(status(&out), 0, "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
     String::from_utf8(out.stdout).unwrap()
 }
 
-/// The one line of error of a command that must fail as bad usage or bad input.
+/// Returns the one line of error of a command that must fail as bad usage or bad input.
 pub(crate) fn bad(folder: &Path, args: &[&str]) -> String {
     let out = burgeon(folder, args);
     let text = String::from_utf8(out.stderr.clone()).unwrap();

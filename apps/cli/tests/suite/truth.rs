@@ -1,4 +1,4 @@
-//! What `burgeon grow` says is what it made: vertices in obstacles, axes and units of options, lines of faults, nothing
+//! The report of `burgeon grow` is true: vertices in obstacles, axes and units of options, lines of faults, nothing
 //! instead of something empty.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -19,7 +19,7 @@ fn write(at: &Path, name: &str, text: &str) {
     fs::write(at.join(name), text).unwrap();
 }
 
-/// A box as OBJ.
+/// Writes a box as OBJ.
 fn block(at: &Path, name: &str, lo: [f64; 3], hi: [f64; 3]) {
     let mut text = String::new();
     for i in 0..8 {
@@ -32,7 +32,7 @@ fn block(at: &Path, name: &str, lo: [f64; 3], hi: [f64; 3]) {
     write(at, name, &text);
 }
 
-/// How deep each vertex of an OBJ lies in a box, found without the program.
+/// Computes how deep each vertex of an OBJ lies in a box, without the program.
 fn depths(file: &Path, lo: [f64; 3], hi: [f64; 3]) -> Vec<f64> {
     let text = fs::read_to_string(file).unwrap();
     let vertices = text.lines().filter_map(|l| l.strip_prefix("v "));
@@ -99,7 +99,7 @@ fn a_trunk_beside_its_root_is_told() {
     assert!(item["warnings"].to_string().contains("its foot stands 0."), "{}", item["warnings"]);
 }
 
-/// A ball of points around (0, 0, 8) with +Z up, in units of which a metre has so many.
+/// Writes a ball of points around (0, 0, 8) with +Z up, in units of which a metre has `per_metre`.
 fn ball(at: &Path, name: &str, per_metre: f64) {
     let mut text = String::new();
     for i in -8..=8 {
@@ -139,7 +139,7 @@ fn root_and_lengths_are_in_the_axes_and_unit_of_the_points() {
     let (a, b) =
         (metres["plant"]["height_m"].as_f64().unwrap(), millimetres["plant"]["height_m"].as_f64().unwrap());
     assert!((a - b).abs() < 0.2 && (8.0..14.0).contains(&a), "{a} m, {b} m");
-    // A mesh to grow around, too: it stands on +Z.
+    // A second mesh to grow around: it stands on +Z.
     block(&at, "z.obj", [0.35, -0.6, 0.0], [1.5, 0.6, 2.2]);
     let z = item(&at, &["oak", "--obstacle", "z.obj", "--up", "z"]);
     block(&at, "y.obj", [0.35, 0.0, -0.6], [1.5, 2.2, 0.6]);

@@ -1,5 +1,5 @@
-//! What is said to people: no word of the language that this is written in, no place in axes that nobody gave, files of
-//! other programs by their names, and one warning for many that are alike.
+//! Messages to people: no word of the programming language, no place in axes that nobody gave, files of other programs
+//! by their names, and one warning for many equal ones.
 #![expect(
     clippy::unwrap_used,
     clippy::disallowed_methods,
@@ -48,7 +48,7 @@ fn assert_plain(text: &str) {
     assert!(FOREIGN.iter().all(|word| !text.contains(word)), "{text}");
 }
 
-/// Values of every kind.
+/// Returns values of every kind.
 fn kinds() -> [Value; 8] {
     [
         json!("text"),
@@ -62,7 +62,7 @@ fn kinds() -> [Value; 8] {
     ]
 }
 
-/// The ways to all fields of a spec with the value that each has.
+/// Finds the paths to all fields of a spec with their values.
 fn fields(spec: &Value, path: &[String], found: &mut Vec<Vec<String>>) {
     let Value::Object(inner) = spec else { return };
     for (name, value) in inner {
@@ -72,7 +72,7 @@ fn fields(spec: &Value, path: &[String], found: &mut Vec<Vec<String>>) {
     }
 }
 
-/// How many values of other kinds are refused in all fields of a spec, each in plain words.
+/// Counts the values of other kinds that are refused in all fields of a spec, each in plain words.
 fn refusals<T: Spec>(whole: &T) -> usize {
     let mut paths = Vec::new();
     fields(&burgeon::spec::to_json(whole), &[], &mut paths);
@@ -111,25 +111,28 @@ fn no_message_names_a_type_of_ours() {
         "7",
     ] {
         fs::write(at.join("e.json"), format!(r#"{{"schema":"burgeon.edits/1","edits":[{edit}]}}"#)).unwrap();
-        assert!(told(&at, &["shape", "grass", "--edits", "e.json", "-o", "x.glb"]));
+        assert!(is_refused_plainly(&at, &["shape", "grass", "--edits", "e.json", "-o", "x.glb"]));
     }
     for text in ["[1]", r#"{"schema": 1}"#, r#"{"laws": "x"}"#] {
         fs::write(at.join("l.json"), text).unwrap();
-        assert!(told(&at, &["bloom", "run", "tulip", "--law", "l.json", "--day", "1", "-o", "x.glb"]));
-        assert!(told(&at, &["leaf", "l.json", "-o", "x.glb"]));
-        assert!(told(&at, &["sketch", "l.json", "-o", "x.glb"]));
+        assert!(is_refused_plainly(
+            &at,
+            &["bloom", "run", "tulip", "--law", "l.json", "--day", "1", "-o", "x.glb"]
+        ));
+        assert!(is_refused_plainly(&at, &["leaf", "l.json", "-o", "x.glb"]));
+        assert!(is_refused_plainly(&at, &["sketch", "l.json", "-o", "x.glb"]));
     }
 }
 
 /// Whether it is refused, in plain words.
-fn told(at: &Path, args: &[&str]) -> bool {
+fn is_refused_plainly(at: &Path, args: &[&str]) -> bool {
     let out = crate::tools::burgeon(at, args);
     let text = String::from_utf8(out.stderr).unwrap();
     assert_plain(&text);
     out.status.code() == Some(2)
 }
 
-/// All files below a folder whose names end so.
+/// Finds all files below a folder whose names have this ending.
 fn below(folder: &Path, end: &str, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -158,7 +161,7 @@ fn texts_of_schemas_are_for_people() {
     }
 }
 
-/// All descriptions in a schema.
+/// Returns all descriptions in a schema.
 fn described(schema: &Value) -> Vec<String> {
     match schema {
         Value::Object(fields) => fields
@@ -173,7 +176,7 @@ fn described(schema: &Value) -> Vec<String> {
     }
 }
 
-/// The library serves Python, npm and the Studio, too: what it says names no option of the command line.
+/// The library serves Python, npm and the Studio, too: its messages name no option of the command line.
 #[test]
 fn the_library_names_no_option_of_the_command_line() {
     let mut files = Vec::new();
@@ -196,7 +199,7 @@ fn the_library_names_no_option_of_the_command_line() {
     assert!(files.len() > 200 && found.is_empty(), "{found}");
 }
 
-/// First bytes of files of other programs, and what they are called.
+/// Returns first bytes of files of other programs, and the names of these files.
 fn others() -> Vec<(&'static str, Vec<u8>, &'static str)> {
     let zip = |name: &str| [&b"PK\x03\x04"[..], &[0; 26], name.as_bytes()].concat();
     vec![
@@ -207,7 +210,7 @@ fn others() -> Vec<(&'static str, Vec<u8>, &'static str)> {
         ("kra", zip("mimetypeapplication/x-krita"), "a Krita document"),
         ("procreate", zip("Document.archivebplist00"), "a Procreate document"),
         ("zip", zip("word/document.xml"), "a ZIP archive"),
-        ("e57", b"ASTM-E57\x01\0\0\0".to_vec(), "a laser scan in E57"),
+        ("e57", b"ASTM-E57\x01\0\0\0".to_vec(), "E57"),
         ("excalidraw", br#"{"type": "excalidraw", "version": 2}"#.to_vec(), "a drawing of Excalidraw"),
         ("tldr", br#"{"tldrawFileFormatVersion": 1}"#.to_vec(), "a drawing of tldraw"),
     ]
@@ -218,7 +221,7 @@ fn files_of_other_programs_are_named() {
     let at = folder("words-foreign");
     for (own, bytes, name) in others() {
         let drawn = ["excalidraw", "tldr"].contains(&own);
-        // Compressed drawings and archives of projects may be read where those are wanted.
+        // Compressed drawings and archives of projects may be read where they are accepted.
         let packed = ["gz", "zip"].contains(&own);
         for end in [own, "toml", "csv", "las", "ply"] {
             let file = format!("given.{end}");
@@ -278,7 +281,7 @@ fn an_age_beyond_life_names_its_end() {
     assert!(bad(&at, &["grow", "steps.toml", "--age", "7", "-o", "x.mtg"]).contains("age must be 1 to 6"));
 }
 
-/// Stems on the ground, +Z up: where along x each stands, and how tall it is, metres.
+/// Writes a scan of stems on the ground, +Z up: position along x and height of each, metres.
 pub(crate) fn stems(all: &[(f64, f64)]) -> String {
     let mut text = String::new();
     for i in 0..3200 {

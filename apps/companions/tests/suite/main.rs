@@ -1,4 +1,4 @@
-//! What a file names is read below its folder, and nothing else.
+//! Files that a file names are read below its folder, and nothing else is.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::fs;
@@ -9,7 +9,7 @@ use companions::{Named, NamedFault, NotAFile, Trust};
 const NEVER: Trust = Trust { paths: false, allow: "--trust-paths" };
 const ALWAYS: Trust = Trust { paths: true, allow: "--trust-paths" };
 
-/// A folder with `secret.txt`, and `model/a.gltf`, `model/sub/b.bin` in it.
+/// Makes a folder with `secret.txt`, and `model/a.gltf`, `model/sub/b.bin` in it.
 fn folder(test: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&path);
@@ -59,7 +59,7 @@ fn what_lies_outside_needs_trust_whether_it_is_there_or_not() {
         assert!(matches!(read(&dir, name, NEVER), Err(NamedFault::Outside { .. })), "{name}");
         assert_eq!(read(&dir, name, ALWAYS).unwrap(), b"secret", "{name}");
     }
-    // What is not there is refused in the same way, so that nobody learns what is.
+    // A missing file is refused in the same way, so that nobody learns what exists.
     for name in ["../none", "/none/at/all", "\\\\none\\share\\x"] {
         assert!(matches!(read(&dir, name, NEVER), Err(NamedFault::Outside { .. })), "{name}");
         assert!(matches!(read(&dir, name, ALWAYS), Err(NamedFault::Missing)), "{name}");
@@ -143,7 +143,7 @@ mod unix {
     #[test]
     fn a_file_that_says_it_is_empty_is_read_up_to_the_limit() {
         let dir = folder("endless");
-        // It has 0 bytes by its metadata, and more when it is read.
+        // Its metadata give 0 bytes, but reading gives more.
         let named = Named { naming: &dir.join("model/a.gltf"), name: "/proc/self/maps" };
         let Ok((file, _)) = named.open(ALWAYS, 10) else { return };
         assert!(matches!(named.read(file, 10).unwrap_err().fault, NamedFault::TooLarge { limit: 10 }));

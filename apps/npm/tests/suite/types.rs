@@ -36,7 +36,7 @@ fn what_travels_has_the_types_of_the_core() {
     }
     add::<PlantView>(&mut all);
     add::<Refusal>(&mut all);
-    // What is asked for may be left out.
+    // Fields of a request may be left out.
     let mut asked = SchemaSettings::draft2020_12().for_deserialize().into_generator();
     add::<TreeAsked>(&mut asked);
     add::<SketchAsked>(&mut asked);
@@ -48,7 +48,7 @@ fn what_travels_has_the_types_of_the_core() {
     check("wire.ts", &out);
 }
 
-/// The schema of a spec, under the name of its type.
+/// Adds the schema of a spec, under the name of its type.
 fn named(all: &mut Map<String, Value>, name: &str, schema: &Value) {
     let mut schema = schema.clone();
     let parts = schema.as_object_mut().and_then(|s| s.remove("$defs"));
