@@ -754,7 +754,158 @@ async function seasons({ page, url, shot }) {
   await page.waitForFunction(() => document.querySelector('#b-maker [data-path=season]')?.disabled);
 }
 
+/** A panel changes all plants that are chosen, as one step, and says where they differ. */
+async function several({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await until(page, 'triangles', ['above', 1000], 'a hazel');
+  await settled(page);
+  const rows = page.locator('.plant[data-plant=tree]');
+  if ((await rows.count()) === 0) await page.click('.scene .fold');
+  for (const n of [2, 3]) {
+    await rows.first().click();
+    await page.click('[id^=b-more-] >> nth=0');
+    await page.click('.menu >> text=Duplicate');
+    await until(page, 'plants', ['is', n], 'a copy');
+    await settled(page);
+  }
+  const word = page.locator('label:has([data-path=season]) output');
+  const length = page.locator('[data-path="/leaves/length_m"]').first();
+  const slide = (to) =>
+    page.locator('[data-path=season]').evaluate((e, x) => {
+      e.value = String(x);
+      e.dispatchEvent(new Event('input', { bubbles: true }));
+      e.dispatchEvent(new Event('change', { bubbles: true }));
+    }, to);
+  /** Chooses each by itself and says its season. */
+  const each = async () => {
+    const said = [];
+    for (const row of [0, 1, 2]) {
+      await rows.nth(row).click();
+      await page
+        .locator(`.plant[data-plant=tree] >> nth=${row}`)
+        .and(page.locator('[aria-current=true]'))
+        .waitFor();
+      await answered(page);
+      said.push(await word.textContent());
+    }
+    return said;
+  };
+  const all = async () => {
+    await rows.first().click();
+    await page.keyboard.down('Shift');
+    await rows.nth(2).click();
+    await page.keyboard.up('Shift');
+    await page.locator('.alike', { hasText: 'all 3' }).waitFor();
+  };
+  await rows.nth(1).click();
+  await answered(page);
+  await slide(0.5);
+  await settled(page);
+  await length.fill('0.05');
+  await length.blur();
+  await settled(page);
+  assert.deepEqual(await each(), ['summer', 'autumn', 'summer']);
+  await all();
+  await becomes(() => word.textContent(), 'different', 'the season of all');
+  assert.deepEqual(
+    [await length.inputValue(), await length.getAttribute('placeholder')],
+    ['', 'different'],
+    'a number of which not all have the same',
+  );
+  // Where they stand is of all, too.
+  await becomes(
+    () => page.locator('[data-key=nx]').evaluate((f) => [f.value, f.placeholder]),
+    ['', 'different'],
+    'the places of all',
+  );
+  await page.fill('[data-key=nscale]', '1.2');
+  await page.locator('[data-key=nscale]').blur();
+  await page.locator('#b-undo[title*="place"]').waitFor();
+  await rested(page);
+  await shot('grove-several-mixed');
+  for (const row of [2, 1, 0]) {
+    await rows.nth(row).click();
+    await becomes(() => field(page, 'nscale'), 1.2, `the size of ${row}`);
+  }
+  await page.keyboard.press('Control+z');
+  await becomes(() => field(page, 'nscale'), 1, 'one step');
+  await all();
+  await slide(-0.7);
+  await becomes(() => word.textContent(), 'unfolding', 'all have it');
+  await settled(page);
+  await length.fill('0.09');
+  await length.blur();
+  await settled(page);
+  await rested(page);
+  await shot('grove-several');
+  assert.deepEqual(await each(), ['unfolding', 'unfolding', 'unfolding']);
+  assert.equal(await length.inputValue(), '0.09');
+  // Each is one step.
+  for (const _ of [1, 2]) await page.keyboard.press('Control+z');
+  await settled(page);
+  assert.deepEqual(await each(), ['summer', 'autumn', 'summer']);
+  // Another species for all.
+  await all();
+  await page.click('#b-maker [data-preset=birch]');
+  await page.locator('#b-undo[title*="species"]').waitFor();
+  await page.locator('#b-maker [data-preset=birch][aria-pressed=true]').waitFor();
+  await page.keyboard.press('Control+z');
+  await settled(page);
+  assert.deepEqual(await each(), ['summer', 'autumn', 'summer']);
+}
+
+/** While plants are moved, turned or sized, numbers are typed. */
+async function typed({ page, url, shot }) {
+  await planted(page, url);
+  await page.click('.scene .fold');
+  await page.locator('[data-key=nx]').waitFor();
+  const place = async () => [
+    await field(page, 'nx'),
+    await field(page, 'nz'),
+    await field(page, 'nyaw'),
+    await field(page, 'nscale'),
+  ];
+  const from = await place();
+  const type = async (text) => {
+    await page.keyboard.type(text);
+    await page.locator('#b-typed').waitFor();
+  };
+  await page.keyboard.press('g');
+  await type('2.55');
+  await page.keyboard.press('Backspace');
+  await page.locator('#b-typed', { hasText: '2.5 m' }).waitFor();
+  await shot('grove-typed');
+  await page.keyboard.press('Enter');
+  await becomes(place, [from[0] + 2.5, ...from.slice(1)], 'moved along x');
+  await type('-1,3');
+  await page.keyboard.press('Enter');
+  await becomes(place, [from[0] + 1.5, from[1] + 3, ...from.slice(2)], 'along both');
+  await page.keyboard.press('r');
+  await type('45');
+  await page.keyboard.press('Enter');
+  await becomes(place, [from[0] + 1.5, from[1] + 3, 45, 1], 'turned');
+  await page.keyboard.press('s');
+  await type('0');
+  await page.keyboard.press('Enter');
+  await page.locator('.note', { hasText: 'no such number' }).waitFor();
+  await type('1.5');
+  await page.keyboard.press('Enter');
+  await becomes(place, [from[0] + 1.5, from[1] + 3, 45, 1.5], 'sized');
+  for (let k = 0; k < 4; k += 1) await page.keyboard.press('Control+z');
+  await becomes(place, from, 'four steps');
+  // Escape leaves the number, and then the hand.
+  await type('7');
+  await page.keyboard.press('Escape');
+  await page.locator('#b-typed').waitFor({ state: 'hidden' });
+  await page.locator('[data-gizmo=scale][aria-pressed=true]').waitFor();
+  await page.keyboard.press('Escape');
+  await page.locator('[data-gizmo=scale][aria-pressed=false]').waitFor();
+}
+
 export const grove = [
+  ['grove: a panel changes all that are chosen', several, WIDE],
+  ['grove: numbers are typed', typed, WIDE],
   ['grove: seasons', seasons, WIDE],
   ['grove: a large tree is seen before it is whole', seen, WIDE],
   ['grove: how far it is', progress, WIDE],

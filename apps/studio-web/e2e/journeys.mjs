@@ -82,7 +82,7 @@ export async function exported(page, format, levels, what, wind) {
   await page.click('#b-export');
   await page.click(`[data-format=${format}]`);
   if (levels) await page.selectOption('#b-levels', String(levels));
-  if (what) await page.selectOption('.export .option:not([hidden]) select', what);
+  if (what) await page.selectOption('#b-what', what);
   if (wind !== undefined) await page.setChecked('#b-wind', wind);
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };

@@ -13,7 +13,9 @@ import { keeping } from './keeping.mjs';
 import { materialJourneys } from './materials.mjs';
 import { serve } from './server.mjs';
 import { network } from './network.mjs';
+import { programJourneys } from './programs.mjs';
 import { shaping } from './shaping.mjs';
+import { sheet } from './sheet.mjs';
 import { staging } from './staging.mjs';
 import { strokes } from './strokes.mjs';
 import { trust } from './trust.mjs';
@@ -33,7 +35,9 @@ const all = [
   ...journeys,
   ...keeping,
   ...strokes,
+  ...sheet,
   ...trust,
+  ...programJourneys,
   ...materialJourneys,
   ...shaping,
   ...staging,

@@ -739,6 +739,7 @@ async function obstacles({ page, url, shot }) {
   await settled(page);
   await page.click('[data-obstacle=ball]');
   await page.locator('[data-path=o0centre0]').waitFor();
+  await settled(page);
   // It has a name of its own, and so has the next.
   const name = page.locator('[data-obstacle-name="0"]');
   await name.fill('Old well');

@@ -158,6 +158,8 @@ async function turned({ page, url, shot }) {
 /** What is hardly understood is drawn faintly, until a person says what it is. */
 async function doubtful({ page, url, shot }) {
   await begin(page, url);
+  // Leaves stay where the hand drew them: where they meet the stem, the spiral is clearly one of them.
+  await page.keyboard.press('j');
   await drawFlower(page);
   await settled(page);
   const spiral = Array.from({ length: 31 }, (_, k) => [330 + k * Math.cos(k / 2), 480 + k * Math.sin(k / 2)]);

@@ -3,18 +3,18 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { add, begin, count, draw, drawFlower, exported, line, sample, settled, until } from './journeys.mjs';
 import { filmed, lookedAt, palette, pixels, unzipped } from './staging.mjs';
-import { answered, finished, pictures, rested, restingEye } from './waits.mjs';
+import { answered, eventually, finished, pictures, rested, restingEye } from './waits.mjs';
 
 /** The part of the view where no tools and lists are. */
 const BESIDE_TOOLS = [0, 0.12, 0.85, 1];
 
 const picture = async (page) => {
-  await finished(page);
+  const grain = await finished(page);
   // What is said of the last step goes by itself.
   await page.evaluate(() => {
     for (const note of document.querySelectorAll('.note')) note.remove();
   });
-  return pixels(page, await page.locator('.view canvas').screenshot(), BESIDE_TOOLS);
+  return { grain, ...(await pixels(page, await page.locator('.view canvas').screenshot(), BESIDE_TOOLS)) };
 };
 
 /** The share of pixels that two pictures of one size do not have in common. */
@@ -41,20 +41,33 @@ function boxOf({ p, across }, is) {
 }
 const isYellow = (r, g, b) => r > 150 && g > 100 && b < 90;
 
-/** The picture of the view, then that of what an export would write. */
+/** The picture of the view, and that of what an export would write. */
+async function drawnAndExported(page, file, shot) {
+  const drawn = await picture(page);
+  await palette(page, 'export-view');
+  await page.locator('#b-exportview').waitFor();
+  await lookedAt(page);
+  const exported = await picture(page);
+  await shot(file);
+  await page.click('#b-exportview-close');
+  return [drawn, exported];
+}
+
 async function parts({ page, url, shot }) {
   await begin(page, url);
   await add(page, 'flower');
   for (const flower of ['sunflower', 'rose']) {
     await page.click(`[data-flower=${flower}]`);
     await settled(page);
-    const drawn = await picture(page);
-    await palette(page, 'export-view');
-    await page.locator('#b-exportview').waitFor();
-    await lookedAt(page);
-    const exported = await picture(page);
-    await shot(`trust-${flower}`);
-    await page.click('#b-exportview-close');
+    let drawn, exported;
+    await eventually(
+      async () => {
+        [drawn, exported] = await drawnAndExported(page, `trust-${flower}`, shot);
+        return [drawn.grain, exported.grain];
+      },
+      ([a, b]) => a === b,
+      `pixels for each of the screen's, ${flower} in the view and exported`,
+    );
     assert.ok(
       apart(drawn, exported) < 0.002,
       `${flower}: ${apart(drawn, exported)} of the view is not what is exported`,

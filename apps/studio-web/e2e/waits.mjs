@@ -86,10 +86,14 @@ export async function rested(page) {
   await page.waitForSelector('.view[data-rests="1"]');
 }
 
-/** Until the view is as fine as it becomes: pictures that are compared are of one grain. */
+/**
+ * Until the view is as fine as it becomes, and how fine that is, in pixels for each of the screen's. A busy machine leaves
+ * out the finest picture: pictures are comparable when they are equally fine.
+ */
 export async function finished(page) {
   await rested(page);
-  await page.waitForSelector('.view[data-finished="1"]');
+  const view = await page.waitForSelector('.view[data-finished]');
+  return Number(await view.getAttribute('data-finished'));
 }
 
 /** Until a piece of the page that comes when it is first asked for is there, and what waited for it is shown. */

@@ -1,44 +1,47 @@
 /** Joins the pieces of the page: what one of them says, another does. No rule about plants is here. */
-import { buildPage, type Parts } from './bars';
-import { Clipboard } from './clipboard';
-import { type CommandId, commandOf } from './commands';
-import type { Page } from './commands';
-import { Card } from './correct';
-import { Documents } from './documents';
-import type { ExportPreview } from './exportview';
-import { Files, safe } from './files';
-import { openFilming } from './filming';
-import { openHelp } from './help';
-import type { Standing } from './keeper';
-import { listenForKeys } from './keyboard';
-import { MakerPanel } from './makers';
-import { openPalette } from './palette';
-import { Panels } from './panels';
-import { Readings } from './readings';
-import { GroundPen } from './scattering';
-import { type Gizmo, SceneList } from './scene';
-import { Scenery } from './scenery';
-import { Session, type SessionEvents } from './session';
-import { Balls } from './balls';
-import { Shaping } from './shaping';
-import { openShelf } from './shelf';
+import { buildPage, type Parts } from './page/bars';
+import { Clipboard } from './drawing/clipboard';
+import { arrange, type CommandId, commandOf } from './page/commands';
+import type { Page } from './page/commands';
+import { Card } from './drawing/correct';
+import { Documents } from './keeping/documents';
+import type { ExportPreview } from './exporting/exportview';
+import type { LightPanel } from './looking/lightview';
+import { Files, safe } from './keeping/files';
+import { openFilming } from './exporting/filming';
+import { openHelp } from './page/help';
+import type { Standing } from './keeping/keeper';
+import { listenForKeys } from './page/keyboard';
+import { MakerPanel } from './making/makers';
+import { openPalette } from './page/palette';
+import { type PanelAnchor, Panels } from './making/panels';
+import { Readings } from './drawing/readings';
+import { GroundPen } from './placing/scattering';
+import { type Gizmo, SceneList } from './placing/scene';
+import { Scenery } from './looking/scenery';
+import { Session, type SessionEvents } from './worker/session';
+import { Balls } from './shaping/balls';
+import { Shaping } from './shaping/shaping';
+import { openShelf } from './keeping/shelf';
 import type { Frame } from './sheet/frame';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
-import { Show, whyNot } from './show';
-import { cutWhenAsked } from './staged';
-import { setSetting } from './store';
+import { TURNS } from './sheet/symmetry';
+import { Show, whyNot } from './page/show';
+import { cutWhenAsked } from './shaping/staged';
+import { setSetting, setting } from './keeping/store';
 import { currentLanguage, setLanguage, t, tell, tOf } from './text';
-import { Theme } from './theme';
-import type { Half } from './halves';
-import { SHEET_TOOLS } from './tools';
-import { endTour, firstRun, tour } from './tour';
-import { download, note } from './ui';
+import { Theme } from './page/theme';
+import type { Half } from './page/halves';
+import { SHEET_TOOLS } from './shaping/tools';
+import { endTour, firstRun, tour } from './page/tour';
+import { download, note } from './page/ui';
+import { Typing } from './placing/typing';
 import { PlantView } from './view/view';
-import { ViewModes } from './viewmode';
+import { ViewModes } from './looking/viewmode';
 import { Door, type Mode } from './vr/door';
-import type { Written } from './exporting';
-import type { Command, GestureRecord, Obstacle, SetDown } from './wire';
-import { Writing } from './writing';
+import type { Written } from './exporting/exporting';
+import type { GestureRecord, Obstacle, PlantState, SetDown, StrokeClass } from './wire';
+import { Writing } from './keeping/writing';
 
 /** The sheet of a plant that is not drawn. */
 const NO_DRAWING = { strokes: [], layers: [], photo: null };
@@ -46,10 +49,14 @@ const NO_DRAWING = { strokes: [], layers: [], photo: null };
 export class App implements Page {
   readonly session = new Session(this.sessionEvents());
   readonly sheet = new Sheet(this.sheetEvents(), t('sheet.label'));
-  private readonly card = new Card(
-    (command) => this.session.draw(command),
-    () => void this.panels.openMaterials(),
-  );
+  private readonly card = new Card({
+    run: (command) => this.session.draw(command),
+    wear: () => void this.panels.openMaterials(),
+    copy: () => void this.clipboard.copy(),
+    duplicate: () => this.clipboard.duplicate(),
+    arrange: (how) => arrange(this, how),
+    choose: (strokes) => this.choose(strokes),
+  });
   readonly panel = this.makerPanel();
   readonly list = this.sceneList();
   /** Both are there, or neither is. */
@@ -68,17 +75,27 @@ export class App implements Page {
     openFile: (file) => this.files.openFile(file),
     choose: (ids) => this.choose(ids),
   });
+  readonly typing = new Typing({
+    gizmo: () => this.gizmo,
+    axis: () => this.axis,
+    chosen: () => this.list.chosen,
+    carry: (plants, how) => this.session.run({ scene: { carry: [[...plants], how] } }),
+  });
   readonly theme = new Theme((dark) => {
     this.sheet.setDark(dark);
     this.view?.setDark(dark);
     this.show.view();
   });
-  readonly readings = new Readings(this.session);
+  readonly readings = new Readings(this.session, (strokes) => this.choose(strokes));
   readonly panels: Panels;
   private readonly show: Show;
   /** The export that is seen before it is written. */
   private preview: ExportPreview | undefined;
+  /** The plants in the colours of the light that they absorb. */
+  private light: LightPanel | undefined;
   private tool: Tool = 'parts';
+  /** The tool before the dropper, which is laid down once it has a colour. */
+  private drawer: Tool = 'parts';
   private readonly panelSizes = new ResizeObserver(() => this.seeBesidePanels());
   /** To which the gizmo is bound. */
   private axis: 'x' | 'z' | undefined;
@@ -113,6 +130,7 @@ export class App implements Page {
     );
     this.door = this.makeDoor();
     this.show = new Show(this, this.build());
+    this.sheet.meets = setting('meets') !== 'off';
     this.showAll();
   }
 
@@ -148,7 +166,7 @@ export class App implements Page {
         const { session, sheet } = this;
         const { drawn, state } = session;
         sheet.setState(drawn ?? NO_DRAWING, fresh);
-        if (other) sheet.setOrgans(session.organs, this.readings.doubtful);
+        if (other) sheet.setOrgans(session.organs, this.readings.doubtful, this.readings.left);
         if (state) this.view?.setPlaces(state.plants, state.current);
         if (other && drawn) sheet.fit();
         if (photo)
@@ -168,7 +186,7 @@ export class App implements Page {
         this.view?.update(view, fresh);
         this.door.seen();
         session.draftShown();
-        this.sheet.setOrgans(session.organs, this.readings.doubtful);
+        this.sheet.setOrgans(session.organs, this.readings.doubtful, this.readings.left);
         this.panel.follow();
         if (fresh.some((f) => f.view.id === session.state?.current)) {
           this.shaping?.renewed();
@@ -180,6 +198,7 @@ export class App implements Page {
         this.modes.refresh();
         this.preview?.follow();
         this.preview?.changed();
+        this.light?.changed();
         if (fresh.length > 0) this.documents.seen();
         void this.documents.rename(session.title);
       },
@@ -237,12 +256,12 @@ export class App implements Page {
 
   private sheetEvents(): SheetEvents {
     return {
-      stroke: (mode, samples, mirror) => {
+      stroke: (mode, inked) => {
         endTour();
-        this.session.stroke(mode, samples, mirror);
+        this.session.stroke(mode, inked);
       },
-      draft: (mode, samples, mirror) => {
-        this.session.setDraft(mode, samples, mirror);
+      draft: (mode, inked) => {
+        this.session.setDraft(mode, inked);
         this.show.emptySheet();
       },
       undraft: () => {
@@ -266,6 +285,19 @@ export class App implements Page {
         this.view?.setSheetSeen(this.sheet.seen());
         this.sheet.reselect();
       },
+      tapped: (fingers) => {
+        const step = { 2: 'undo', 3: 'redo' }[fingers] as CommandId | undefined;
+        if (step) commandOf(step).run(this);
+      },
+      picked: (color) => {
+        if (color === undefined) {
+          note(t('note.colourless'));
+          return;
+        }
+        this.panels.takeColour(color);
+        this.setTool(this.drawer);
+      },
+      centred: () => this.show.switches(),
     };
   }
 
@@ -273,12 +305,10 @@ export class App implements Page {
     const { session } = this;
     return new MakerPanel(() => this.panels.catalogue, {
       run: (c) => session.run(c),
-      act: (action) => {
-        if (typeof action === 'object' && 'preset' in action) this.panels.takeSpecies(action.preset);
-        else session.act(action);
-      },
+      runAll: (name, commands) => session.runAll(name, commands),
+      species: (plants, key) => this.panels.takeSpecies(plants, key),
       begin: (name) => session.begin(name),
-      stage: (command) => session.stage(command),
+      stage: (command, ...more) => session.stage(command, ...more),
       commit: () => session.commit(),
       choose: (accept, act) => this.files.pickFile(accept, act),
       obstacle: (file) => void this.panels.addObstacle(file),
@@ -292,7 +322,10 @@ export class App implements Page {
     return new SceneList({
       run: (c) => this.session.run(c),
       select: (plant) => this.session.select(plant),
-      chose: (plants) => this.view?.setChosen(plants),
+      chose: (plants) => {
+        this.view?.setChosen(plants);
+        this.show.maker();
+      },
       add: (maker) => void this.panels.add(maker),
       split: (plant) => this.session.act({ split: { plant } }),
       gizmo: (mode) => {
@@ -307,15 +340,8 @@ export class App implements Page {
         this.pen?.take(wish);
         if (wish) note(t(`scatter.${wish.pattern}.hint`));
       },
-      together: (name, commands) => this.together(name, commands),
+      together: (name, commands) => this.session.together(name, commands),
     });
-  }
-
-  /** Several commands as one step of undo. */
-  private together(name: string, commands: readonly Command[]): void {
-    this.session.begin(name);
-    for (const command of commands) this.session.run(command);
-    this.session.commit();
   }
 
   private makeDocuments(): Documents {
@@ -536,13 +562,26 @@ export class App implements Page {
   private showAll(): void {
     this.show.standing(this.documents.keeper.standing);
     this.setTool(this.tool);
+    this.show.meant(this.panels.meant);
     this.show.switches();
     this.show.document();
     // The view is shown with it.
     this.theme.apply();
   }
 
-  anchor(name: 'photo' | 'settings' | 'materials' | 'pen' | 'layers'): HTMLElement {
+  meant(kind: StrokeClass | null): void {
+    this.show.meant(kind);
+  }
+
+  symmetry(): void {
+    this.show.switches();
+  }
+
+  get chosen(): readonly PlantState[] {
+    return this.list.chosen;
+  }
+
+  anchor(name: PanelAnchor): HTMLElement {
     return this.show.parts.buttons.get(name)!;
   }
 
@@ -572,13 +611,14 @@ export class App implements Page {
   }
 
   setTool(tool: Tool): void {
+    if (tool === 'dropper' && this.tool !== 'dropper') this.drawer = this.tool;
     this.tool = tool;
     this.sheet.setTool(tool);
     for (const [name] of SHEET_TOOLS) this.show.press(name, name === tool);
   }
 
   choose(strokes: number[]): void {
-    this.setTool('select');
+    if (this.tool !== 'lasso') this.setTool('select');
     this.sheet.select(strokes);
   }
 
@@ -591,8 +631,36 @@ export class App implements Page {
     // The main axis's root, where there is a plant; else the middle of the sheet.
     const { left, right } = sheet.seen();
     const root = session.drawn && session.drawn.strokes.length > 0 ? session.seen?.front?.x : undefined;
-    sheet.setAxis(sheet.symmetric ? undefined : (root ?? (left + right) / 2));
+    const isOn = sheet.symmetry?.kind === 'mirror';
+    sheet.symmetry = isOn ? undefined : { kind: 'mirror', x: root ?? (left + right) / 2 };
     this.show.switches();
+  }
+
+  /** Symmetry round a centre, which the next press puts; where there is one, how it is. */
+  openTurns(): void {
+    const { sheet } = this;
+    if (sheet.symmetry?.kind !== 'turns') {
+      const { left, right, bottom, top } = sheet.seen();
+      const about = [(left + right) / 2, (bottom + top) / 2] as const;
+      sheet.symmetry = { kind: 'turns', about, count: TURNS.first };
+      sheet.centring = true;
+      this.show.switches();
+    }
+    void this.panels.openTurns();
+  }
+
+  /** Whether ends of strokes meet what is drawn. */
+  toggleMeets(): void {
+    const { sheet } = this;
+    sheet.meets = !sheet.meets;
+    setSetting('meets', sheet.meets ? 'on' : 'off');
+    note(t(sheet.meets ? 'note.meets' : 'note.meets.not'));
+  }
+
+  mean(kind: StrokeClass | null): void {
+    const { selected } = this.sheet;
+    if (selected.length > 0) this.session.draw({ 'set-class': [selected, kind] });
+    else this.panels.mean(this.panels.meant === kind ? null : kind);
   }
 
   toggleStats(): void {
@@ -609,6 +677,7 @@ export class App implements Page {
       this.shaping?.take(this.shaping.word);
       this.sheet.select([]);
       this.preview?.close();
+      this.light?.close();
       this.panel.reset();
       this.show.parts = this.build();
       this.show.parts.busy.hidden = this.started;
@@ -632,10 +701,11 @@ export class App implements Page {
 
   openPreview(): void {
     const { session, view } = this;
+    this.light?.close();
     if (this.preview) this.preview.close();
     else if (!view || session.isBare) note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
     else
-      void import('./exportview').then(({ ExportPreview }) => {
+      void import('./exporting/exportview').then(({ ExportPreview }) => {
         const host = this.show.parts.sheetTools.parentElement!;
         this.preview ??= new ExportPreview({
           session,
@@ -649,6 +719,27 @@ export class App implements Page {
           },
         });
         this.show.press('export-view', true);
+      });
+  }
+
+  openLight(): void {
+    const { session, view } = this;
+    this.preview?.close();
+    if (this.light) this.light.close();
+    else if (!view || session.isBare) note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
+    else
+      void import('./looking/lightview').then(({ LightPanel }) => {
+        const host = this.show.parts.sheetTools.parentElement!;
+        this.light ??= new LightPanel({
+          session,
+          view,
+          host,
+          closed: () => {
+            this.light = undefined;
+            this.show.press('light', false);
+          },
+        });
+        this.show.press('light', true);
       });
   }
 

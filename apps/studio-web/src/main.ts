@@ -1,7 +1,7 @@
 /** The page. */
 import { App } from './app';
 import { setLanguage } from './text';
-import { setting } from './store';
+import { setting } from './keeping/store';
 
 const chosen = setting('language');
 const own = navigator.language.toLowerCase().startsWith('zh') ? 'zh' : 'en';

@@ -10,7 +10,10 @@ export const CODES = {
   "ball-none": ["row", "mark", "rows"],
   "cancelled": [],
   "class-without-stroke": ["index"],
+  "clear-without-sun": [],
+  "direct-without-sun": [],
   "edit-at-fault": ["row", "why"],
+  "engine-file": ["wanted", "given"],
   "field-range": ["field", "range", "value"],
   "file-empty": [],
   "file-io": ["why"],
@@ -41,6 +44,7 @@ export const CODES = {
   "graph-one-sided": [],
   "graph-radii": ["nodes", "radii"],
   "graph-small": ["nodes"],
+  "growth-light": ["why"],
   "internal": ["why"],
   "json-ends": [],
   "law": ["why"],
@@ -50,6 +54,9 @@ export const CODES = {
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
   "lender-without-leaf": ["name"],
+  "light-crowded": ["surfaces", "crossings", "most"],
+  "light-empty": [],
+  "light-far": ["triangle", "most_m"],
   "lsystem-line": ["line", "why"],
   "lsystem-no-axiom": [],
   "lsystem-no-match": ["there", "rules"],
@@ -76,10 +83,12 @@ export const CODES = {
   "no-flowers": ["name"],
   "no-leaf-to-lend": [],
   "no-leaves": [],
+  "no-light": [],
   "no-petal-colour": ["word", "known"],
   "no-photo": [],
   "no-picture": [],
   "no-plant": [],
+  "no-print": ["why"],
   "no-room": ["found", "wanted"],
   "no-roots": [],
   "no-species": ["name"],
@@ -88,6 +97,7 @@ export const CODES = {
   "no-such-export": ["format"],
   "no-such-plant": ["plant"],
   "no-such-stroke": ["stroke"],
+  "no-sunrise": [],
   "no-surface": [],
   "no-tree": ["name"],
   "no-usable-stroke": [],
@@ -112,6 +122,7 @@ export const CODES = {
   "place-too-far": [],
   "plant-gone": [],
   "plant-not-made": ["name"],
+  "prints-one": [],
   "project-archive": ["why"],
   "project-json": ["entry", "why"],
   "project-missing": ["name"],
@@ -179,6 +190,7 @@ export const CODES = {
   "split-no-drawing": [],
   "split-one-plant": ["name"],
   "step-too-long": ["step_m", "space_m"],
+  "sun-below": ["elevation_deg"],
   "too-far": [],
   "too-many-edits": ["most"],
   "too-many-layers": ["most"],
@@ -305,20 +317,31 @@ export const FORMATS = {
   },
 } as const;
 
-/** What can be asked that is more than one [`document::Command`]. */
+/** The programs that plants go to, by their words. */
+export const ENGINES = {
+  three: { about: "three.js and what stands on it: .glb, packed, with wind for a shader", endings: ["glb", "gltf"] },
+  blender: { about: "Blender: .glb, plain, with wind as attributes", endings: ["glb", "gltf"] },
+  unity: { about: "Unity by glTFast: .glb, levels and a collider in one file, with wind for a shader", endings: ["glb", "gltf"] },
+  unreal: { about: "Unreal Engine: .usda, a skeleton with leaves on its joints (Nanite), or .glb, a static mesh with shapes for collisions", endings: ["usda", "glb", "gltf"] },
+  godot: { about: "Godot 4: .glb with a shape for collisions, with wind for a shader; it makes levels itself", endings: ["glb", "gltf"] },
+  isaac: { about: "Isaac Sim and other readers of USD: .usda or .usdz, metres, +Z up", endings: ["usda", "usdz", "physics.usda"] },
+  print: { about: "A 3-D printer: one closed body as .stl or .ply, millimetres, +Z up, on a flat foot", endings: ["stl", "ply"] },
+} as const;
+
+/** Requests that take more than one [`document::Command`]. */
 export type Action =
-  | /** An empty document in the place of this one. */
+  | /** Replaces the document by an empty one. */
   "new"
-  | /** Adds a plant beside the others and chooses it. */
+  | /** Adds a plant next to the others and chooses it. */
   {
     add: {
       /** Its maker. */
       maker: NewMaker;
-      /** What it is called. */
+      /** Its name. */
       name: string;
     };
   }
-  | /** Makes a tree or a flower another species. */
+  | /** Gives a tree or a flower another species. */
   {
     preset: {
       /** The key of the preset. */
@@ -327,7 +350,7 @@ export type Action =
       plant: PlantId;
     };
   }
-  | /** Puts the plants that a drawing shows in its place, each a drawing of its own. */
+  | /** Splits a drawing of several plants into drawings of one plant each. */
   {
     split: {
       /** The drawing. */
@@ -343,11 +366,11 @@ export type Action =
 
 /** Names one axis of a plant. */
 export type AxisKey =
-  | /** What a program remembers of an axis that was picked. */
+  | /** Mark that a program remembers of a picked axis. */
   {
     mark: Mark;
   }
-  | /** By number: which stem of the plant, which of its branches from the base up, and so on; all from 0. */
+  | /** Path by number, as people write it into a file: the stem of the plant, its branch from the base up, and so on, all from 0. */
   {
     path: number[];
   }
@@ -356,15 +379,15 @@ export type AxisKey =
     near: [number, number, number];
   };
 
-/** One control ball moved and rescaled: the place of a mark and the thickness of the veins there. */
+/** One control ball moved and rescaled: the position of a mark and the thickness of the veins there. */
 export type BallMove = {
-  /** How far it is moved: to the right as one looks at the upper side with the tip up, towards the tip, and off the upper side; metres, -10 to 10. */
+  /** Offset to the right as seen on the upper side with the tip up, towards the tip, and off the upper side; metres, -10 to 10. */
   by_m: [number, number, number];
-  /** Mark of the row from the right margin, 1 to 7, of which 4 is on the midrib; of chief veins the mark from the base. */
+  /** Mark of the row from the right margin, 1 to 7, where 4 is on the midrib; for chief veins the mark from the base. */
   mark: number;
-  /** Row of marks from the tip down, from 1, or 0 for the tip; of chief veins the vein from the right margin, from 1. */
+  /** Row of marks from the tip down, from 1, or 0 for the tip; for chief veins the vein from the right margin, from 1. */
   row: number;
-  /** The veins there are so many times as thick, 0.05 to 20, default 1. */
+  /** Factor on the thickness of the veins there, 0.05 to 20, default 1. */
   thickness: number;
 };
 
@@ -385,82 +408,82 @@ export type BrushStroke = {
   radius_m: number[];
 };
 
-/** How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant. */
+/** Rigid motion of a branch and all that it bears: `p -> to + turn (p - from)`, metres of the plant. */
 export type CarriedPose = {
-  /** Where it began. */
+  /** Base of the branch before. */
   from: [number, number, number];
-  /** The name of the meshes of which [`Workspace::held_rows`](crate::Workspace::held_rows) are. */
+  /** Name of the meshes that [`Workspace::held_rows`](crate::Workspace::held_rows) refers to. */
   mesh: number;
-  /** Where it begins now. */
+  /** Base of the branch now. */
   to: [number, number, number];
-  /** A unit quaternion: x, y, z, w. */
+  /** Rotation, a unit quaternion: x, y, z, w. */
   turn: [number, number, number, number];
 };
 
-/** How plants are carried: sized and turned about a point, then moved. */
+/** A common movement of plants: scaled and turned about a point, then moved. */
 export type Carry = {
-  /** What stays where it is while they are sized and turned, metres. */
+  /** Fixed point of the scaling and turning, metres. */
   about: [number, number, number];
-  /** Metres. */
+  /** Offset, metres. */
   by: [number, number, number];
-  /** Times their size, above 0. */
+  /** Factor on their size, above 0. */
   scale: number;
-  /** About +Y, degrees, counter-clockwise seen from above. */
+  /** Turn about +Y, degrees, counter-clockwise seen from above. */
   turn_deg: number;
 };
 
-/** What an edit changed. */
+/** Changes made by an edit. */
 export type Changed = {
   /** Branches added. */
   added: number;
-  /** Branches that a mirror plane has on one side only: nothing bears them on the other, or an obstacle stands there. */
+  /** Branches that a mirror plane has on one side only: no wood bears them on the other, or an obstacle stands there. */
   alone?: number;
-  /** The branch was found by its likeness: its own key had changed. */
+  /** Whether the branch was found by its likeness because its own key had changed. */
   by_likeness: boolean;
   /** Leaves added. */
   leaves_added: number;
-  /** Leaves taken away. */
+  /** Leaves removed. */
   leaves_removed: number;
   /** Branches turned or moved, those borne included. */
   moved: number;
-  /** Branches taken away. */
+  /** Branches removed. */
   removed: number;
 };
 
-/** A measured value of a plant against what is plausible (`docs/limits.md` has the table). */
+/** A measured value of a plant and its plausible bound (`docs/limits.md` has the table). */
 export type CheckReport = {
-  /** What to do if it is not plausible. */
+  /** Advice for an implausible value. */
   advice: string;
-  /** What is plausible. */
+  /** The plausible bound. */
   bound: number;
-  /** What was measured, with its bound, as a sentence. */
+  /** The measured value, with its bound, as a sentence. */
   message: string;
-  /** A word that stays, such as `size-large`. */
+  /** A stable word, such as `size-large`. */
   name: string;
   /** Whether the value is plausible. */
   ok: boolean;
-  /** What it means if not. */
+  /** Meaning of an implausible value. */
   severity: SeverityWord;
-  /** On which side of the bound. */
+  /** The plausible side of the bound. */
   side: SideWord;
-  /** What was measured. */
+  /** The measured value. */
   value: number;
 };
 
 /** An sRGB colour, written `#rrggbb`. */
 export type Colour = string;
 
-/** What can be asked of a document: of the scene, of any plant, or of a plant of one maker. */
+/** A command on a document: on the scene, on any plant, or on a plant of one maker. */
 export type Command =
-  | /** Plants come and go. */
+  | /** Adds, removes and moves plants. */
   {
     scene: SceneCommand;
   }
-  | /** Name, seed, place of a plant. */
+  | /** Name, seed and place of a plant. */
   {
     plant: [PlantId, PlantCommand];
   }
-  | /** Edits by hand of a plant with branches. */
+  | /** Hand edits of a plant with branches. */
   {
     shape: [PlantId, ShapeCommand];
   }
@@ -481,7 +504,7 @@ export type Command =
     flower: [PlantId, FlowerCommand];
   };
 
-/** Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read. */
+/** Counts of a plant and its meshes; none where nothing was counted, such as the leaves of a model that was read. */
 export type Counts = {
   /** Axes of every kind. */
   axes: number | null;
@@ -501,22 +524,22 @@ export type Counts = {
   vertices: number;
 };
 
-/** Where a branch is moved to. */
+/** Destination of a moved branch. */
 export type Destination =
-  | /** Along its bearer by so many metres, towards the tip if positive; it keeps its angle to the bearer. */
+  | /** Along its bearer by this distance in metres, towards the tip if positive; it keeps its angle to the bearer. */
   {
     'slide-m': number;
   }
-  | /** Onto a place of another branch, or of its own bearer; it keeps its angle to what bears it. */
+  | /** Onto a place of another branch, or of its own bearer; it keeps its angle to its bearer. */
   {
     place: {
-      /** Where along it, as a share of its length. */
+      /** Place on the bearer, as a share of its length. */
       at: number;
-      /** What bears it then. */
+      /** The new bearer. */
       axis: AxisKey;
     };
   }
-  | /** By a vector, metres: what stands on the ground is set elsewhere, what is borne slides to the place of its bearer that is nearest to the new base. */
+  | /** By a vector, metres: a branch on the ground is set elsewhere, a borne branch slides to the place of its bearer nearest to the new base. */
   {
     'by-m': [number, number, number];
   };
@@ -529,9 +552,9 @@ export type DocumentState = {
     | null;
   /** Name of the scene. */
   name: string;
-  /** The numbers that they go by. */
+  /** Their numbers. */
   numbers: PlantNumbers;
-  /** The plants in the order in which they came in. */
+  /** The plants in the order in which they were added. */
   plants: PlantState[];
   /** Name of the step that redo does again. */
   redo: string | null;
@@ -558,29 +581,94 @@ export type DrawingFormat =
   | /** tldraw's files; one drawing a file. */
   "tldraw";
 
-/** What became of one edit. */
+/** Outcome of one edit. */
 export type EditReport = {
-  /** What it changed; all 0 if it was not done. */
+  /** Changes that it made; all 0 if it was not done. */
   changed: Changed;
-  /** `done`, or a stable word for why not. */
+  /** `done`, or a stable word for the reason why not. */
   code: string;
   /** Whether it was done. */
   done: boolean;
   /** Its place in the list, from 0. */
   index: number;
-  /** In plain words. */
+  /** The outcome in plain words. */
   said: string;
 };
 
-/** What kind of edit by hand. */
+/** A hand edit. */
 export type EditState = {
-  /** Left out for now. */
+  /** Whether it is left out for now. */
   off: boolean;
-  /** The word of [`burgeon::shape::HandEdit`]. */
+  /** Its word in [`burgeon::shape::HandEdit`]. */
   op: string;
 };
 
-/** A format that something is written as, by its word. */
+/** A program that plants go to. */
+export type Engine =
+  | /** three.js and what stands on it. */
+  "three"
+  | /** Blender. */
+  "blender"
+  | /** Unity by glTFast. */
+  "unity"
+  | /** Unreal Engine. */
+  "unreal"
+  | /** Godot 4. */
+  "godot"
+  | /** Isaac Sim and other readers of USD. */
+  "isaac"
+  | /** A 3-D printer. */
+  "print";
+
+/** An export as a program wants it. */
+export type EngineAnswer = {
+  /** The export. */
+  request: ExportRequest;
+  /** What was set for the program. */
+  set: EngineSet[];
+};
+
+/** Choices of a person for an export to a program; null is open. */
+export type EngineAsk = {
+  /** The program. */
+  engine: Engine;
+  /** The format. */
+  format: ModelFormat;
+  /** Whether to add views from all sides. */
+  impostor: boolean | null;
+  /** Whether leaves of one form are written once. */
+  instances: boolean | null;
+  /** Levels of detail, 1 to 4. */
+  levels: number | null;
+  /** Whether all levels go into one file. */
+  one_file: boolean | null;
+  /** Whether columns are compressed. */
+  packed: boolean | null;
+  /** Whether to write joints and an animation that sways. */
+  sway: boolean | null;
+  /** The unit of the file. */
+  unit: 
+    | Unit
+    | null;
+  /** The vertical axis of the file. */
+  up: 
+    | UpAxis
+    | null;
+  /** Whether the whole scene is exported. */
+  whole: boolean;
+  /** Whether drawings and trees get wind columns. */
+  wind: boolean | null;
+};
+
+/** A setting that a program wants and the person left open. */
+export type EngineSet = {
+  /** The option (up, unit, lods, pack, wind), or what no option sets: levels, collider, wind-sets, names. */
+  name: string;
+  /** Its value, empty for a switch; for what no option sets a few English words. */
+  value: string;
+};
+
+/** Format of an export, by its word. */
 export type ExportFormat =
   | /** The meshes of the plants. */
   ModelFormat
@@ -589,45 +677,55 @@ export type ExportFormat =
   | /** The current drawing. */
   DrawingFormat;
 
-/** What is exported, and how it is written. */
+/** Subject and format of an export. */
 export type ExportRequest = {
+  /** The program that the files are for: [`Engine::Print`] gets one closed body, the others what the settings above say. */
+  engine: 
+    | Engine
+    | null;
   /** The format. */
   format: ExportFormat;
-  /** One more level, the last: views from all sides in one picture, where it is glTF. */
+  /** Whether to add a last level, views from all sides in one picture, for glTF. */
   impostor: boolean;
+  /** Whether leaves of one form are written once, for glTF (`EXT_mesh_gpu_instancing`); they do not move in the wind. */
+  instances: boolean;
   /** Levels of detail, 1 to 4: each has about half of the triangles of the one before. */
   levels: number;
-  /** All levels in one file, where it is glTF (`MSFT_lod`); else each has its own. */
+  /** Whether parts and materials are named after their plant. */
+  named: boolean;
+  /** Whether all levels go into one file, for glTF (`MSFT_lod`); else each has its own. */
   one_file: boolean;
-  /** Joints and an animation that sways, where it is glTF; each level then has a file of its own. */
+  /** Whether columns are compressed (`EXT_meshopt_compression`), for glTF without joints. */
+  packed: boolean;
+  /** Whether to write joints and an animation that sways, for glTF; each level then has a file of its own. */
   sway: boolean;
   /** The unit of the file. */
   unit: Unit;
   /** The vertical axis of the file. */
   up: UpAxis;
-  /** The whole scene, else the current plant. */
+  /** Whether the whole scene is exported, else the current plant. */
   whole: boolean;
-  /** How wind moves drawings and trees, where the format has room for it. */
+  /** Whether drawings and trees get wind columns, where the format has room for them. */
   wind: boolean;
 };
 
-/** What an export would write of one level of detail. */
+/** Contents of an export at one level of detail. */
 export type ExportView = {
-  /** Meshes that a program draws to show all of it. */
+  /** Number of meshes that a program draws to show all of it. */
   draws: number;
-  /** Bytes of the file with this level alone, or of its zip: it was written and counted. */
+  /** Bytes of the file with this level alone, or of its zip, counted from the written file. */
   file_bytes: number;
   /** The level; 0 is the finest. */
   level: number;
   /** Its meshes; copies share theirs. */
   models: PlantView[];
-  /** What it holds, by what it is of. */
+  /** Its contents by kind. */
   parts: PartFigures[];
-  /** Which of them each plant is; none where the one model is all that there is, as it stands. */
+  /** The mesh of each plant; empty where the one model stands for the whole scene. */
   plants: ExportedPlant[];
   /** Their bytes as PNG. */
   texture_bytes: number;
-  /** Textures in it or beside it. */
+  /** Number of textures in it or next to it. */
   textures: number;
 };
 
@@ -647,37 +745,37 @@ export type FaceCounts = {
   vertices: number;
 };
 
-/** The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. */
+/** Comparison of the model's front view with the drawing, measured both ways; distances are shares of the drawing's diagonal. */
 export type FidelityReport = {
-  /** The share of the drawing's ink that was measured, by length, 0 to 1: strokes that were left out were not. */
+  /** The measured share of the drawing's ink, by length, 0 to 1: strokes that were left out were not measured. */
   compared: number | null;
-  /** Mean distance from the model's axes and outlines to the ink: what the model shows and nobody drew. */
+  /** Mean distance from the model's axes and outlines to the ink: parts that the model shows and nobody drew. */
   excess_mean: number | null;
-  /** 95 % of the model's axes and outlines are nearer than this. */
+  /** Distance within which 95 % of the model's axes and outlines lie. */
   excess_p95: number | null;
-  /** The area that filled contours (crowns, clusters) share with what grew in them, over the area of either, 0 to 1. */
+  /** The area that filled contours (crowns, clusters) share with their filling, over the area of their union, 0 to 1. */
   overlap: number | null;
   /** Mean distance from the drawn lines to the model's lines and outlines. */
   reprojection_mean: number | null;
-  /** 95 % of the drawn lines are nearer than this. */
+  /** Distance within which 95 % of the drawn lines lie. */
   reprojection_p95: number | null;
 };
 
-/** What a file was. */
+/** Kind of an opened file. */
 export type FileKind =
-  | /** Took the document's place. */
+  | /** A project, which replaced the document. */
   "project"
-  | /** Took the document's place. */
+  | /** A drawing, which replaced the document. */
   "drawing"
-  | /** Is shown. */
+  | /** A model, which is shown. */
   "model"
-  | /** Marks that went to a leaf. */
+  | /** Measurements, which went to a leaf. */
   "leaf"
   | /** A new tree. */
   "tree"
   | /** A new flower that opens. */
   "flower"
-  | /** A growth law that went to the current flower. */
+  | /** A growth law, which went to the current flower. */
   "law";
 
 /** Eq 2: growth of twigs and midribs inside a contour. */
@@ -698,9 +796,9 @@ export type FillSpec = {
   tropism: number;
 };
 
-/** What can be asked of a flower. */
+/** Commands of a flower. */
 export type FlowerCommand =
-  | /** Takes another spec, such as that of a species. */
+  | /** Replaces the spec, for example by that of a species. */
   {
     'set-spec': [string | null, Json];
   }
@@ -708,16 +806,16 @@ export type FlowerCommand =
   {
     'set-field': [string, Json];
   }
-  | /** Shows it on a day. */
+  | /** Sets the day on which it is shown. */
   {
     'set-day': number;
   }
-  | /** Takes a fitted law, or the species' own pace again. */
+  | /** Sets a fitted law, or the species' own pace again. */
   {
     'set-law': Json;
   };
 
-/** Which flower, on which day. */
+/** Settings of a flower, and its day. */
 export type FlowerState = {
   /** Days since the bud. */
   day: number;
@@ -729,25 +827,25 @@ export type FlowerState = {
   spec: Record<string, Json>;
 };
 
-/** How a drawing lies in the front view of its plant. */
+/** Placement of a drawing in the front view of its plant. */
 export type Front = {
-  /** Metres of the drawing's unit. */
+  /** Metres for each unit of the drawing. */
   metres_per_unit: number;
-  /** Where the plant's origin lies in the drawing. */
+  /** Position of the plant's origin in the drawing, along x. */
   x: number;
-  /** Where the plant's origin lies in the drawing, y up. */
+  /** Position of the plant's origin in the drawing, along y, up. */
   y: number;
 };
 
-/** What was done in a step. */
+/** A deed of a step. */
 export type GestureDeed =
   | /** A hand with a tool. */
   {
     hand: HandDeed;
   }
-  | /** The edit was asked for that the last gesture made. */
+  | /** The edit of the last gesture was requested. */
   "keep"
-  | /** The plants were made again, and seen. */
+  | /** The plants were made again, and shown. */
   "seen"
   | /** Another plant was chosen. */
   {
@@ -757,32 +855,32 @@ export type GestureDeed =
   {
     command: Command;
   }
-  | /** What is more than one command, and where it put a plant. */
+  | /** An action of more than one command, and the place that it gave a plant. */
   {
     action: [Action, number | null];
   }
-  | /** What is staged from here on is one step of undo of this name. */
+  | /** Begins a gesture: the commands staged from here on form one step of undo of this name. */
   {
     begin: string;
   }
-  | /** In the place of what was staged before. */
+  | /** Replaces the staged command. */
   {
     stage: Command;
   }
-  | /** What was staged is done. */
+  | /** Commits the staged command. */
   "commit"
-  | /** What was staged is taken back. */
+  | /** Takes the staged command back. */
   "abandon"
   | /** The last step was taken back. */
   "undo"
-  | /** It was done again. */
+  | /** It was redone. */
   "redo";
 
-/** What hands did to the plants of a session, in its order. */
+/** Gestures on the plants of a session, in their order. */
 export type GestureRecord = {
-  /** The digest of the plant that was worked on last, as it was seen then. */
+  /** Digest of the plant that was worked on last, at its last evaluation. */
   digest?: string | null;
-  /** The numbers of the project's plants, by which steps name them. */
+  /** Numbers of the project's plants, by which steps name them. */
   numbers?: 
     | PlantNumbers
     | null;
@@ -790,7 +888,7 @@ export type GestureRecord = {
   plant?: 
     | PlantId
     | null;
-  /** The project as the hands found it: a `.burgeon` file in base64. */
+  /** The project at the start of the session: a `.burgeon` file in base64. */
   project?: string | null;
   /** Always [`GESTURES_SCHEMA`]. */
   schema: string;
@@ -800,9 +898,9 @@ export type GestureRecord = {
 
 /** One step. */
 export type GestureStep = {
-  /** What. */
+  /** The deed. */
   did: GestureDeed;
-  /** When, ms since the first. */
+  /** Time in ms since the first step. */
   ms: number;
 };
 
@@ -816,22 +914,22 @@ export type Ground =
   {
     area: [number, number][];
   }
-  | /** All over what a brush covers. */
+  | /** All over the ground that a brush covers. */
   {
     brush: {
-      /** Its way. */
+      /** Path of the brush. */
       path: [number, number][];
       /** Its radius, metres. */
       radius_m: number;
     };
   };
 
-/** Where a shoot begins that grows by itself. */
+/** Start of a shoot that grows by itself. */
 export type GrowFrom =
-  | /** On a branch; at its tip, the branch goes on. */
+  | /** On a branch; at its tip, the shoot continues the branch. */
   {
     branch: {
-      /** Where along it, as a share of its length. */
+      /** Place on it, as a share of its length. */
       at: number;
       /** The branch. */
       axis: AxisKey;
@@ -842,9 +940,9 @@ export type GrowFrom =
     ground: [number, number, number];
   };
 
-/** What grew since a hand holds on, both sides of a plane of symmetry together. */
+/** Growth since a hand began to hold, both sides of a plane of symmetry together. */
 export type Grown = {
-  /** Branches, those shown last. */
+  /** Number of branches in the last view. */
   branches: number;
   /** Its density: branches for each metre of new wood; none before any grew. */
   per_metre: number | null;
@@ -852,15 +950,15 @@ export type Grown = {
   rounds: number;
 };
 
-/** How a shoot grows by itself; every number may change while it does. */
+/** Settings of a shoot that grows by itself; every number may change while it grows. */
 export type Growth = {
-  /** Between a shoot and the buds at its side, 0 to 180 degrees. */
+  /** Angle between a shoot and its lateral buds, 0 to 180 degrees. */
   angle_deg: number;
-  /** How strongly shoots keep apart, 0 to 10. */
+  /** Strength with which shoots keep apart, 0 to 10. */
   apart: number;
   /** Apical control: the share of the main axis at a fork, 0 to 1. */
   apical: number;
-  /** Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1. */
+  /** Pull to the light, or of the weight if negative, -10 to 10; free space pulls with 1. */
   lift: number;
   /** Vigour per unit of free space, above 0 and at most 100. */
   vigour: number;
@@ -870,13 +968,13 @@ export type Growth = {
 export type GrowthReport = {
   /** Attraction points or markers of all cycles. */
   attractors: number;
-  /** Of these, consumed. */
+  /** Number of these consumed. */
   consumed: number;
   /** Life cycles. */
   cycles: number;
-  /** Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where there is no obstacle, or nothing was measured. */
+  /** Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none without an obstacle, or without a measurement. */
   inside_obstacle: number | null;
-  /** How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above. */
+  /** Depth of the deepest vertex inside an obstacle, metres; 0 if there is none inside; none as above. */
   inside_obstacle_depth_m: number | null;
   /** Rounds, years or rewriting steps. */
   iterations: number;
@@ -888,37 +986,37 @@ export type GrowthReport = {
   method: string;
   /** Joints of the skeleton. */
   nodes: number;
-  /** Of these, never reached. */
+  /** Number of these never reached. */
   unreachable: number;
 };
 
-/** Numbers of [`GuidedSpec`] that change while a tree grows; what is left out stays as it was. */
+/** Numbers of [`GuidedSpec`] that change while a tree grows; numbers that are left out stay. */
 export type GuidedChange = {
   /** Vigour per unit of free space, above 0 and at most 100. */
   alpha?: number | null;
-  /** Between a shoot and the buds at its side, 0 to 180 degrees. */
+  /** Angle between a shoot and its lateral buds, 0 to 180 degrees. */
   branch_angle_deg?: number | null;
   /** Share of the main axis at a fork (apical control), 0 to 1. */
   lambda?: number | null;
   /** Markers of one bud in one round, 4 to 10000. */
   markers?: number | null;
-  /** How strongly others' markers push away, 0 to 10. */
+  /** Strength of the repulsion by others' markers, 0 to 10. */
   repulsion?: number | null;
-  /** The first round that has them, from 0, at most 1000. */
+  /** The first round with these numbers, from 0, at most 1000. */
   round: number;
-  /** All strokes that guide from then on. */
+  /** All guiding strokes from then on. */
   strokes?: BrushStroke[] | null;
   /** Weight and light. */
   tropisms?: Tropism[] | null;
 };
 
-/** What a hand did with a tool. */
+/** A deed of a hand with a tool. */
 export type HandDeed = {
-  /** What the hand did. */
+  /** Input of the hand. */
   input: ShapeInput;
-  /** How far beside a branch it still was meant. */
+  /** Largest distance from a branch at which it is still meant. */
   reach: ShapeReach;
-  /** The tool, as it was set. */
+  /** The tool, with its settings. */
   tool: ToolKind;
 };
 
@@ -929,7 +1027,7 @@ export type HandEdit =
     /** The branch. */
     axis: AxisKey;
     op: "rotate";
-    /** How. */
+    /** The rotation. */
     turn: Turn;
   }
   | /** Moves a branch with all that it bears. */
@@ -937,7 +1035,7 @@ export type HandEdit =
     /** The branch. */
     axis: AxisKey;
     op: "move";
-    /** Where to. */
+    /** The destination. */
     to: Destination;
     /** Turns it about its base there, from how it would stand otherwise. */
     turn?: 
@@ -949,28 +1047,28 @@ export type HandEdit =
     /** The branch. */
     axis: AxisKey;
     op: "copy";
-    /** Where to; also onto the branch itself or onto what it bears. */
+    /** The destination; also on the branch itself or on a part that it bears. */
     to: Destination;
   }
   | /** Cuts a branch off, with all that it bears beyond the cut. */
   {
-    /** Where along it, as a share of its length; 0 (the default) takes all of it. */
+    /** Place of the cut, as a share of its length; 0 (the default) removes all of it. */
     at: number;
     /** The branch. */
     axis: AxisKey;
     op: "prune";
   }
-  | /** Cuts a branch off and lets another one grow in the room that it had. */
+  | /** Cuts a branch off and grows another one in the room that it had. */
   {
     /** The branch. */
     axis: AxisKey;
     op: "regrow";
-    /** Another number, another branch. */
+    /** Seed: another number gives another branch. */
     seed: number;
   }
   | /** Adds a branch that was drawn in space. */
   {
-    /** Where along it, as a share of its length; without, where the line starts nearest to it. */
+    /** Place on the bearer, as a share of its length; without it, the place nearest to the start of the line. */
     at?: number | null;
     /** The branch that it grows from. */
     bearer: AxisKey;
@@ -981,18 +1079,18 @@ export type HandEdit =
     op: "sketch-branch";
     /** Its course, metres, at least two points; it is joined to its bearer. */
     points: [number, number, number][];
-    /** Another number, other twigs. */
+    /** Seed: another number gives other twigs. */
     seed: number;
-    /** How many twigs grow on it, relative to the plant's habit, 0 (none) to 4; default 1. */
+    /** Number of twigs on it, relative to the plant's habit, 0 (none) to 4; default 1. */
     twigs: number;
   }
   | /** Lets branches grow along a stroke of a brush (the VR paper). */
   {
-    /** The branch that they grow from; without, the one nearest to the stroke's start. */
+    /** The bearer of the new branches; without it, the branch nearest to the stroke's start. */
     bearer?: 
       | AxisKey
       | null;
-    /** How densely it fills, 0.1 to 10: more markers, more branches; default 1. */
+    /** Density of the filling, 0.1 to 10: more markers, more branches; default 1. */
     density: number;
     /** Makes it on the other side of a plane, too. */
     mirror?: 
@@ -1003,14 +1101,14 @@ export type HandEdit =
     points: [number, number, number][];
     /** Radius of the brush, metres, above 0: one number, or one for each point. */
     radius_m: number[];
-    /** Another number, other branches. */
+    /** Seed: another number gives other branches. */
     seed: number;
   }
   | /** Lets a shoot grow by itself, for as many rounds as a hand held on (the VR paper). */
   {
-    /** Numbers of growth from some round on, as a hand turned them meanwhile; what they leave out stays as it was, and is that of guided growth at first, with the angles of the plant. */
+    /** Settings of growth from some round on, as a hand changed them; a field left out keeps its value, at first that of guided growth with the angles of the plant. */
     changes?: GuidedChange[];
-    /** Where it begins. */
+    /** Start of the shoot. */
     from: GrowFrom;
     /** Makes it on the other side of a plane, too. */
     mirror?: 
@@ -1019,14 +1117,14 @@ export type HandEdit =
     op: "grow";
     /** Rounds of growth. */
     rounds: number;
-    /** Another number, other branches. */
+    /** Seed: another number gives other branches. */
     seed: number;
     /** The side on which it leaves its bearer; without, the upper one. */
     towards?: [number, number, number] | null;
   }
   | /** Fills an outline that was drawn in a plane facing the viewer (the VR paper). */
   {
-    /** How densely it is filled, 0.1 to 10; default 1. */
+    /** Density of the filling, 0.1 to 10; default 1. */
     density: number;
     /** Fills the image of the outline on the other side of a plane, too. */
     mirror?: 
@@ -1037,61 +1135,61 @@ export type HandEdit =
     outline: [number, number][];
     /** The plane. */
     plane: ViewPlane;
-    /** Another number, other branches. */
+    /** Seed: another number gives other branches. */
     seed: number;
-    /** Cuts off what leaves the outline. */
+    /** Whether parts outside the outline are cut off. */
     trim: boolean;
   }
-  | /** Takes leaves away, or adds some. */
+  | /** Removes leaves, or adds some. */
   {
-    /** Share of the leaves that stay, 0 to 1; above 1, to 4: as many times more. */
+    /** Share of the leaves that stay, 0 to 1; above 1, up to 4, the factor by which their number grows. */
     keep: number;
     op: "leaf-density";
-    /** Where. */
+    /** The region. */
     region: LeafRegion;
-    /** Another number, other leaves. */
+    /** Seed: another number gives other leaves. */
     seed: number;
   };
 
 /** One plant. */
 export type ItemReport = {
-  /** Of `shape --list`: the branches that were asked for. */
+  /** For `shape --list`: the branches that were asked for. */
   branches?: Json[];
-  /** What was checked of it: whether a person would accept it. */
+  /** Checks of whether a person would accept it. */
   checks: CheckReport[];
   /** Numbers of things. */
   counts: Counts;
   /** Fingerprint of the plant: independent of platform and threads. */
   digest: string;
-  /** Of a plant that was edited by hand: what became of each edit, in their order. */
+  /** For a plant that was edited by hand: the outcome of each edit, in their order. */
   edits?: EditReport[];
-  /** How near the model's front view is to the drawing. */
+  /** Distance between the model's front view and the drawing. */
   fidelity: FidelityReport;
-  /** Of `grow`: what growth did. */
+  /** For `grow`: figures of the growth. */
   growth?: 
     | GrowthReport
     | null;
-  /** Of `leaf`: veins, blade and how well they fit. */
+  /** For `leaf`: veins, blade and how well they fit. */
   leaf?: 
     | LeafReport
     | null;
   /** Name of the drawing. */
   name: string;
-  /** The file that was written; empty if none. */
+  /** The file written; empty if none. */
   output: string;
-  /** Of a plant with axes: what a botanist would measure on it. */
+  /** For a plant with axes: the measures that a botanist would take of it. */
   plant?: Json;
-  /** Of a drawing: what it may show, at most three: what it was read as first, then the others, the best first. */
+  /** For a drawing: at most three interpretations, the chosen one first, then the others, the best first. */
   readings?: ReadingReport[];
-  /** Every stroke and what became of it. */
+  /** Every stroke and its result. */
   strokes: StrokeReport[];
   /** Times of the stages. */
   timings_ms: TimingsMs;
-  /** What was not as the user might expect. */
+  /** Warnings for the user. */
   warnings: string[];
 };
 
-/** What a drawing can show. */
+/** The kind of plant that a drawing shows. */
 export type Kind =
   | /** A flower on its stem, or its head alone. */
   "flower"
@@ -1135,9 +1233,9 @@ export type KindWord =
 
 /** A layer of a drawing. */
 export type Layer = {
-  /** What lies on it is not seen and not part of the plant. */
+  /** Whether its strokes are invisible and not part of the plant. */
   hidden: boolean;
-  /** What lies on it stays as it is. */
+  /** Whether its strokes are protected from changes. */
   locked: boolean;
   /** Its name, unique in the drawing, 1 to 200 characters. */
   name: string;
@@ -1145,27 +1243,27 @@ export type Layer = {
 
 /** One control ball. */
 export type LeafBall = {
-  /** Where it is, in the coordinates of the leaf, metres. */
+  /** Position in the coordinates of the leaf, metres. */
   at: [number, number, number];
   /** As in `BallMove`. */
   mark: number;
-  /** Of the thickest vein there, metres; 0 where there is none. */
+  /** Radius of the thickest vein there, metres; 0 where there is none. */
   radius_m: number;
   /** As in `BallMove`. */
   row: number;
 };
 
-/** All control balls of a leaf, bent as it is, and the directions in which they are moved. */
+/** All control balls of a leaf in its bent form, and the directions in which they are moved. */
 export type LeafBalls = {
-  /** The tip first, then row by row; of chief veins vein by vein. */
+  /** Balls with the tip first, then row by row; for chief veins, vein by vein. */
   balls: LeafBall[];
   /** Unit vectors of the first, second and third number of `BallMove::by_m`. */
   sides: [[number, number, number], [number, number, number], [number, number, number]];
 };
 
-/** What can be asked of a measured leaf. */
+/** Commands of a measured leaf. */
 export type LeafCommand =
-  | /** Takes other measurements, none of whose control balls was moved. */
+  | /** Replaces the measurements by others, with no control ball moved. */
   {
     'set-data': LeafData;
   }
@@ -1191,52 +1289,52 @@ export type LeafDepth =
   | /** The front view of the model is the drawing; the blade leaves the plane by tilt and bend only. */
   "drawn";
 
-/** How far measured points are from the blade, millimetres. */
+/** Distances of measured points from the blade, millimetres. */
 export type LeafFit = {
   /** Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through. */
   explained: number;
-  /** The farthest. */
+  /** Largest distance. */
   max_mm: number;
-  /** 95 of 100 points are nearer. */
+  /** Distance within which 95 of 100 points lie. */
   p95_mm: number;
   /** Root of the mean square. */
   rms_mm: number;
 };
 
-/** The form of a leaf with one midrib, where nothing was measured. */
+/** The form of a leaf with one midrib, used if nothing was measured. */
 export type LeafForm = {
-  /** How far both halves are raised along the midrib, degrees, -60 to 60, default 10. */
+  /** Angle by which both halves are raised along the midrib, degrees, -60 to 60, default 10. */
   fold_deg: number;
   /** Length of the midrib, metres, 0.002 to 10, default 0.1. */
   length_m: number;
-  /** How far the margin goes in between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
+  /** Depth of the margin between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
   lobes: number;
   /** Angle between side veins and midrib, degrees, 15 to 85, default 50. */
   vein_angle_deg: number;
   /** Pairs of side veins, 2 to 30, default 8. */
   veins: number;
-  /** Where it is widest: 0.1 near the base to 0.9 near the tip, default 0.4. */
+  /** Position of the greatest width: 0.1 near the base to 0.9 near the tip, default 0.4. */
   widest: number;
   /** Greatest width over length, 0.02 to 2, default 0.5. */
   width: number;
 };
 
-/** What colours a measured blade. */
+/** Colouring of a measured blade. */
 export type LeafPaint =
   | /** Painted by the distance from the veins. */
   "veins"
   | /** One green. */
   "plain";
 
-/** Which leaves are meant. */
+/** Region of leaves. */
 export type LeafRegion =
-  | /** All. */
+  | /** All leaves. */
   "all"
-  | /** Those of a branch and of all that it bears. */
+  | /** The leaves of a branch and of all that it bears. */
   {
     branch: AxisKey;
   }
-  | /** Those within a stroke. */
+  | /** The leaves within a stroke. */
   {
     stroke: {
       /** The stroke, metres, one point or more. */
@@ -1252,15 +1350,15 @@ export type LeafReport = {
   area_mm2: number;
   /** The blade's mesh; faces are quads. */
   blade: FaceCounts;
-  /** Rings at which a vein is thicker than it bends. */
+  /** Rings at which the vein's radius exceeds its radius of curvature. */
   crossing_rings: number | null;
-  /** Distances of what was measured from the blade. */
+  /** Distances of the measured points from the blade. */
   fit_error: LeafFit;
   /** Length of the midrib, millimetres. */
   length_mm: number;
   /** Rows of marks. */
   rows: number;
-  /** Of a scan: what was found in it. */
+  /** For a scan: its findings. */
   scan?: 
     | ScanReport
     | null;
@@ -1268,13 +1366,13 @@ export type LeafReport = {
   surface: string;
   /** Rings whose ball is inside its neighbours; none for plain rings. */
   swallowed_rings: number | null;
-  /** The farthest that a vein's centre line is from the blade, millimetres. */
+  /** Largest distance of a vein's centre line from the blade, millimetres. */
   vein_gap_mm: number | null;
   /** The veins' mesh; faces are quads (and triangles of caps). */
   veins: FaceCounts;
 };
 
-/** How a leaf is made of its marks (Wang et al. */
+/** Construction of a leaf from its marks (Wang et al. */
 export type LeafSpec = {
   /** Control balls moved and rescaled by hand (Wang et al. */
   balls: BallMove[];
@@ -1282,7 +1380,7 @@ export type LeafSpec = {
   caps: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
   curl: number;
-  /** The form of the leaf where nothing was measured. */
+  /** Form of the leaf if nothing was measured. */
   form: LeafForm;
   /** Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1. */
   length_m: number;
@@ -1300,7 +1398,7 @@ export type LeafSpec = {
   surface: SurfaceKind;
   /** Colour of the blade. */
   texture: LeafPaint;
-  /** What a measured thickness is; default what the file says, else the diameter. */
+  /** Meaning of a measured thickness; default that of the file, otherwise the diameter. */
   thickness: 
     | ThicknessRule
     | null;
@@ -1310,14 +1408,80 @@ export type LeafSpec = {
   wilt: number;
 };
 
-/** What a leaf is made of. */
+/** Source of a leaf. */
 export type LeafState = {
   /** Name of the file of marks or veins. */
   file: string;
-  /** How the leaf is made of it. */
+  /** Settings for making the leaf of it. */
   settings: LeafSpec;
   /** Its text. */
   text: string;
+};
+
+/** Light that is asked for: sky, and sun by its direction or by a place on earth. */
+export type LightAsk = {
+  /** PAR of the sky on a horizontal surface, W/m2. */
+  diffuse: number | null;
+  /** PAR of the sun on a horizontal surface, W/m2. */
+  direct: number | null;
+  /** Place and day. */
+  place: 
+    | LightPlace
+    | null;
+  /** Approximate number of lines of light in each direction. */
+  rays: number | null;
+  /** The sky. */
+  sky: 
+    | SkyShape
+    | null;
+  /** Azimuth of the sun from north over east, and its elevation, degrees. */
+  sun: [number, number] | null;
+};
+
+/** A place on earth on a day. */
+export type LightPlace = {
+  /** Year, month and day. */
+  date: [number, number, number];
+  /** The hour by the clock; null: the sum of the day. */
+  hour: number | null;
+  /** Latitude, degrees north. */
+  latitude: number;
+  /** Longitude, degrees east. */
+  longitude: number;
+};
+
+/** The scene in light. */
+export type LightView = {
+  /** Light absorbed by all plants. */
+  absorbed: number;
+  /** Light at the end of the scale of colours, absorbed by a square metre of surface. */
+  brightest: number;
+  /** That of the sky. */
+  diffuse: number;
+  /** That of the sun. */
+  direct: number;
+  /** Hours of sunshine, for a day. */
+  hours: number | null;
+  /** Light on a square metre of a horizontal surface above the plants. */
+  incoming: number;
+  /** Light absorbed by leaves. */
+  leaf_absorbed: number;
+  /** One side of all leaves, square metres. */
+  leaf_area: number;
+  /** Light absorbed by a square metre of leaves, over that on a horizontal surface. */
+  leaf_share: number | null;
+  /** The coloured meshes of all plants. */
+  model: PlantView;
+  /** Colours at even shares of it, sRGB. */
+  scale: [number, number, number][];
+  /** Azimuth and elevation of the sun, degrees. */
+  sun: [number, number] | null;
+  /** Share of the leaf area that is in the sun. */
+  sunlit: number | null;
+  /** W for a moment, MJ for a day. */
+  unit: string;
+  /** Warnings. */
+  warnings: WarningView[];
 };
 
 /** The maker of a plant. */
@@ -1331,29 +1495,29 @@ export type MakerWord =
   | /** A species that opens. */
   "flower";
 
-/** What is remembered of an axis. */
+/** Mark by which an axis is remembered. */
 export type Mark = {
-  /** Where it starts. */
+  /** Position of its base. */
   base: [number, number, number];
-  /** From base to tip, a unit vector. */
+  /** Direction from base to tip, a unit vector. */
   direction: [number, number, number];
   /** The axis's own key, hexadecimal. */
   id: string;
   /** Woody or green, stalk or root. */
   kind: KindWord;
-  /** Along its course. */
+  /** Length along its course. */
   length: number;
   /** Order of branching, 0 for a trunk. */
   order: number;
 };
 
-/** How a mesh looks. */
+/** Appearance of a mesh. */
 export type MaterialView = {
   /** Linear red, green, blue. */
   color: [number, number, number];
-  /** What it is of: bark, leaf, petal, ... */
+  /** Kind of its organs: bark, leaf, petal, ... */
   kind: string;
-  /** The texture has holes. */
+  /** Whether the texture has holes. */
   masked: boolean;
   /** Its name in files. */
   name: string;
@@ -1365,23 +1529,23 @@ export type MaterialView = {
   orm: 
     | TextureView
     | null;
-  /** 0 to 1. */
+  /** Roughness, 0 to 1. */
   roughness: number;
   /** Its picture. */
   texture: 
     | TextureView
     | null;
-  /** 0 to 1. */
+  /** Translucency, 0 to 1. */
   translucency: number;
-  /** Seen from both sides. */
+  /** Whether it is visible from both sides. */
   two_sided: boolean;
 };
 
-/** A plane of symmetry: what is made on one side is made on the other. */
+/** A plane of symmetry: an edit on one side is mirrored to the other. */
 export type Mirror = {
-  /** Across it, of any length above 0. */
+  /** Normal of the plane, of any length above 0. */
   normal: [number, number, number];
-  /** A point of it, metres. */
+  /** A point on the plane, metres. */
   point: [number, number, number];
 };
 
@@ -1402,9 +1566,9 @@ export type ModelFormat =
   | /** Universal Scene Description with its textures in one file. */
   "usdz";
 
-/** An obstacle with the name under which a person knows it. */
+/** An obstacle with a name for its user. */
 export type NamedObstacle = {
-  /** For lists; at most 200 characters. */
+  /** Name in lists; at most 200 characters. */
   name: string;
   /** The solid. */
   shape: Obstacle;
@@ -1412,7 +1576,7 @@ export type NamedObstacle = {
 
 /** An obstacle with its name. */
 export type NamedShape = {
-  /** For lists. */
+  /** Name in lists. */
   name: string;
   /** The solid. */
   shape: ObstacleView;
@@ -1445,31 +1609,31 @@ export type Obstacle =
   }
   | /** A ball. */
   {
-    /** Its middle. */
+    /** Its centre. */
     centre: [number, number, number];
-    /** Above 0. */
+    /** Its radius, above 0. */
     radius_m: number;
     shape: "sphere";
   }
   | /** An upright cylinder. */
   {
-    /** Middle of its base. */
+    /** Centre of its base. */
     base: [number, number, number];
-    /** Above 0. */
+    /** Its height, above 0. */
     height_m: number;
-    /** Above 0. */
+    /** Its radius, above 0. */
     radius_m: number;
     shape: "cylinder";
   }
   | /** Everything behind a plane: a wall, a slope. */
   {
-    /** Away from the solid side; any length above 0. */
+    /** Direction away from the solid side; any length above 0. */
     normal: [number, number, number];
     /** Any point of the plane. */
     point: [number, number, number];
     shape: "plane";
   }
-  | /** A mesh, in metres, +Y up; small holes and inverted faces are borne (winding number). */
+  | /** A mesh, in metres, +Y up; small holes and inverted faces are tolerated (winding number). */
   {
     shape: "mesh";
     /** Corners of each triangle. */
@@ -1478,57 +1642,57 @@ export type Obstacle =
     vertices: [number, number, number][];
   };
 
-/** An obstacle to be shown: a mesh is told by its size only, its corners are asked for. */
+/** An obstacle to be shown: of a mesh only the size; its corners are fetched separately. */
 export type ObstacleView =
-  | /** Any but a mesh. */
+  | /** Any shape but a mesh. */
   Obstacle
   | /** A mesh. */
   {
     /** Always `mesh`. */
     shape: string;
-    /** How many it has. */
+    /** Number of triangles. */
     triangles: number;
   };
 
-/** What was opened. */
+/** Result of opening a file. */
 export type Opened = {
-  /** What it was. */
+  /** Kind of the file. */
   kind: FileKind;
-  /** What it is called. */
+  /** Its name. */
   name: string;
   /** Every drawing of the file, at most a thousand. */
   names: string[];
-  /** What is odd about it. */
+  /** Warnings about it. */
   warnings: WarningView[];
 };
 
 /** A material of leaves, petals or sepals. */
 export type OrganMaterial = {
-  /** How much there is of the second colour, 0 to 1, default 0.5. */
+  /** Amount of the second colour, 0 to 1, default 0.5. */
   amount: number;
-  /** The first colour; that of most of the organ. */
+  /** The first colour, which covers most of the organ. */
   color: Colour;
-  /** What is painted on it. */
+  /** The painted pattern. */
   pattern: Pattern;
-  /** Of the pattern `picture`: which. */
+  /** Picture of the pattern `picture`. */
   picture: string | null;
-  /** 0 is as glossy as wet leaves, 1 as matt as velvet; default 0.6. */
+  /** Roughness: 0 is as glossy as wet leaves, 1 as matt as velvet; default 0.6. */
   roughness: number;
-  /** The second colour: of veins, streaks, spots, the margin, the root. */
+  /** The second colour, for veins, streaks, spots, the margin, the root. */
   second: Colour;
 };
 
 /** Figures of all meshes of one kind. */
 export type PartFigures = {
-  /** Bytes of columns and corners, as binary glTF and graphics cards hold them; of copies in binary glTF once. */
+  /** Bytes of columns and indices, as binary glTF and graphics cards hold them; those of copies in binary glTF count once. */
   bytes: number;
-  /** Meshes that a program draws, those of copies as often as they stand there; 0 where the file is a single mesh. */
+  /** Meshes that a program draws; those of copies count each time; 0 where the file is a single mesh. */
   draws: number;
-  /** What they are of: bark, leaf, petal, ... */
+  /** Kind of the meshes: bark, leaf, petal, ... */
   kind: string;
-  /** Triangles, those of copies as often as they stand there. */
+  /** Triangles; those of copies count each time. */
   triangles: number;
-  /** Vertices, those of copies as often as they stand there. */
+  /** Vertices; those of copies count each time. */
   vertices: number;
 };
 
@@ -1540,7 +1704,7 @@ export type PartView = {
   name: string;
 };
 
-/** What is painted on an organ. */
+/** Pattern that is painted on an organ. */
 export type Pattern =
   | /** One colour. */
   "plain"
@@ -1559,13 +1723,17 @@ export type Pattern =
   | /** A picture, upright from root to tip. */
   "picture";
 
-/** The pen that a stroke is drawn with; what is left out is that of every sheet. */
+/** The pen that a stroke is drawn with; a field left out is that of the default pen. */
 export type PenStyle = {
-  /** The colour of what is drawn, sRGB. */
+  /** The class of strokes that are drawn with it, if the person chose one. */
+  class: 
+    | StrokeClass
+    | null;
+  /** Colour of the stroke, sRGB. */
   color: [number, number, number] | null;
   /** The name of the layer. */
   layer: string | null;
-  /** In the drawing's unit, above 0. */
+  /** Width in the drawing's unit, above 0. */
   width: number | null;
 };
 
@@ -1588,9 +1756,9 @@ export type PetalColor =
   | /** Crimson magenta. */
   "magenta";
 
-/** How a photograph lies under the drawing. */
+/** Place of a photograph under the drawing. */
 export type PhotoPlace = {
-  /** How strongly it shows under the drawing, 0 to 1, default 0.5. */
+  /** Opacity under the drawing, 0 to 1, default 0.5. */
   opacity: number;
   /** Whether organs that were traced over it take its colours. */
   paint: boolean;
@@ -1602,41 +1770,41 @@ export type PhotoPlace = {
   y: number;
 };
 
-/** How a photograph lies, and its size. */
+/** Placement of a photograph, and its size. */
 export type PhotoState = {
-  /** Height in the drawing's unit: it follows from the picture. */
+  /** Height in the drawing's unit, which follows from the picture. */
   height: number;
   /** Pixels across and down. */
   pixels: [number, number];
-  /** As it was asked for. */
+  /** Requested placement. */
   place: PhotoPlace;
 };
 
 /** The branch that is meant. */
 export type Picked = {
-  /** Where along it, a share of its length. */
+  /** Place on it, as a share of its length. */
   at: number;
   /** Its row. */
   axis: number;
-  /** Shoots that it bears, and that these bear. */
+  /** Number of shoots that it bears, directly or through others. */
   bears: number;
-  /** A name for edits, where the pointer went down or up. */
+  /** Key for edits, where the pointer went down or up. */
   key: 
     | AxisKey
     | null;
-  /** Along its course. */
+  /** Length along its course. */
   length_m: number;
-  /** 0 for the main axis. */
+  /** Order of branching, 0 for the main axis. */
   order: number;
-  /** Where, metres. */
+  /** That place, metres. */
   point: [number, number, number];
-  /** Nothing bears it. */
+  /** Whether it stands on the ground. */
   stands: boolean;
 };
 
-/** Where a plant stands: scaled, turned about the vertical, then moved. */
+/** Place of a plant: scaled, turned about the vertical, then moved. */
 export type Placement = {
-  /** Where its origin stands, metres; each coordinate up to 100 km. */
+  /** Position of its origin, metres; each coordinate up to 100 km. */
   position: [number, number, number];
   /** Size, 0.001 to 1,000. */
   scale: number;
@@ -1644,9 +1812,9 @@ export type Placement = {
   yaw_deg: number;
 };
 
-/** What can be asked of any plant. */
+/** Commands of any plant. */
 export type PlantCommand =
-  | /** Names it. */
+  | /** Renames it. */
   {
     rename: string;
   }
@@ -1654,23 +1822,23 @@ export type PlantCommand =
   {
     'set-seed': string;
   }
-  | /** Keeps its seed from dice, or no longer. */
+  | /** Locks or unlocks its seed for dice. */
   {
     lock: boolean;
   }
-  | /** Takes it out of the view, or back. */
+  | /** Hides it from the view, or shows it again. */
   {
     hide: boolean;
   }
-  | /** Puts it into the group of a name; an empty one takes it out of its group. */
+  | /** Puts it into the group of a name; an empty name takes it out of its group. */
   {
     group: string;
   }
-  | /** Sets where it stands. */
+  | /** Sets its placement. */
   {
     place: Placement;
   }
-  | /** Keeps it where it stands, or no longer. */
+  | /** Locks or unlocks its place. */
   {
     fix: boolean;
   }
@@ -1681,56 +1849,56 @@ export type PlantCommand =
       | null];
   };
 
-/** Names one plant for as long as the document lives. */
+/** Names one plant for the lifetime of the document. */
 export type PlantId = number;
 
-/** The numbers that the plants of a document go by: a file keeps none, and commands name plants by them. */
+/** Numbers of the plants of a document: files do not store them, but commands name plants by them. */
 export type PlantNumbers = {
-  /** The one that a new plant is given; above all others. */
+  /** Number of the next new plant; above all others. */
   next: number;
-  /** Of each plant, in the order of the document. */
+  /** Number of each plant, in the order of the document. */
   plants: PlantId[];
 };
 
-/** One plant; of `sketch`, `tree`, `leaf` and `flower` that of its maker is there. */
+/** One plant; of `sketch`, `tree`, `leaf` and `flower`, the field of its maker is present. */
 export type PlantState = {
-  /** Edits by hand, in the order in which they are done. */
+  /** Hand edits, in the order in which they are applied. */
   edits: EditState[];
-  /** Whether it stays where it stands. */
+  /** Whether its place is locked. */
   fixed: boolean;
-  /** Of a flower. */
+  /** State of a flower. */
   flower: 
     | FlowerState
     | null;
   /** The group it belongs to; empty for none. */
   group: string;
-  /** It is left out of the view. */
+  /** Whether it is left out of the view. */
   hidden: boolean;
   /** Its name within the document. */
   id: PlantId;
-  /** Of a measured leaf. */
+  /** State of a measured leaf. */
   leaf: 
     | LeafState
     | null;
   /** Whether others may bear its leaf. */
   lends: boolean;
-  /** Dice leave its seed alone. */
+  /** Whether dice leave its seed alone. */
   locked: boolean;
   /** Its maker. */
   maker: MakerWord;
   /** Its name. */
   name: string;
-  /** Metres. */
+  /** Position, metres. */
   position: [number, number, number];
-  /** Size. */
+  /** Scale. */
   scale: number;
-  /** As text: JavaScript's numbers hold 53 bits. */
+  /** Seed as text: JavaScript's numbers hold 53 bits. */
   seed: string;
-  /** Of a drawing. */
+  /** State of a drawing. */
   sketch: 
     | SketchState
     | null;
-  /** Of a tree. */
+  /** State of a tree. */
   tree: 
     | TreeState
     | null;
@@ -1742,15 +1910,15 @@ export type PlantState = {
 
 /** A plant as it is seen. */
 export type PlantView = {
-  /** Bud to full bloom, and from there to wilted. */
+  /** Days from bud to full bloom, and from there to wilted. */
   days: [number, number] | null;
-  /** Why it could not be made; what was made before stays. */
+  /** Reason why it could not be made; earlier results stay. */
   error: 
     | Refusal
     | null;
-  /** Its meshes are others than those of the last view. */
+  /** Whether its meshes differ from those of the last view. */
   fresh: boolean;
-  /** How a drawing lies in the front view. */
+  /** Placement of a drawing in the front view. */
   front: 
     | Front
     | null;
@@ -1760,22 +1928,32 @@ export type PlantView = {
   item: 
     | ItemReport
     | null;
-  /** What they are made of. */
+  /** Materials of the meshes. */
   materials: MaterialView[];
   /** Upper corner of its bounds, metres. */
   max: [number, number, number];
-  /** The name of its meshes: plants that have the same share them. */
+  /** Name of its meshes: plants with the same meshes share it. */
   mesh: number | null;
   /** Lower corner of its bounds, metres. */
   min: [number, number, number];
-  /** What it grows around. */
+  /** Obstacles that it grows around. */
   obstacles: ObstacleView[];
   /** Its meshes. */
   parts: PartView[];
-  /** What was done again. */
+  /** Stages that were computed again. */
   stages: string[];
-  /** What was not as one might expect of it. */
+  /** Warnings about it. */
   warnings: WarningView[];
+};
+
+/** A body for a printer beside its plant. */
+export type PrintFigures = {
+  /** Number of surfaces that were left out, as they hang on nothing or lie within the body. */
+  loose: number;
+  /** Number of times that the plant is larger. */
+  scale: number;
+  /** Least thickness of any part, millimetres: thinner ones are thickened. */
+  wall_mm: number;
 };
 
 /** The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs stand off from their bearer. */
@@ -1791,17 +1969,17 @@ export type PullSet =
 
 /** One interpretation of a whole drawing. */
 export type ReadingReport = {
-  /** The kind of plant; of several plants of different kinds that of the largest. */
+  /** The kind of plant; for several plants of different kinds that of the largest. */
   kind: Kind;
-  /** How many plants it would show. */
+  /** Number of plants in it. */
   plants: number;
-  /** How likely it is right, 0 to 1; of several plants their mean. */
+  /** Probability that it is right, 0 to 1; for several plants their mean. */
   score: number;
 };
 
-/** Why something was not done, for a shell: words for people in English, and what another language needs for its own. */
+/** Reason why a request was refused, for a shell: a sentence in English, and the values for one in another language. */
 export type Refusal = {
-  /** Those of the fields that are refusals themselves. */
+  /** Fields that are refusals themselves. */
   causes?: Record<string, Refusal>;
   /** A word in kebab-case that never changes its meaning. */
   code: string;
@@ -1827,22 +2005,22 @@ export type ReliefSpec = {
   petal_hollow: number;
 };
 
-/** How a ring of the tube is placed. */
+/** Placement of a ring of the tube. */
 export type RingRule =
   | /** A circle of the ball's radius in the plane across the centre line (Wang et al. */
   "plain"
   | /** The circle in which the ball touches the envelope of all balls: the exact surface. */
   "envelope";
 
-/** What was found in a scan. */
+/** Findings of a scan. */
 export type ScanReport = {
-  /** Share of the blade that has a point within 2 mm; the rest are holes that were bridged. */
+  /** Share of the blade that has a point within 2 mm; the rest are bridged holes. */
   covered: number;
   /** Points left out because their neighbours are far. */
   outliers: number;
   /** Length of the outline, millimetres. */
   outline_mm: number;
-  /** Points read, without those that are no numbers. */
+  /** Points read, without those that are not numbers. */
   points: number;
   /** Length of the stalk, millimetres; none if there is no stalk. */
   stalk_mm: number | null;
@@ -1850,35 +2028,35 @@ export type ScanReport = {
   width_mm: number;
 };
 
-/** Copies of a plant, and where they are to stand. */
+/** Copies of a plant, and the ground that they stand on. */
 export type Scatter = {
-  /** Where. */
+  /** The ground. */
   ground: Ground;
-  /** How many different plants the copies are, each with a seed of its own; 0 for copies that are all alike. */
+  /** Number of different plants among the copies, each with a seed of its own; 0 for copies that are all alike. */
   kinds: number;
   /** The plant. */
   plant: PlantId;
   /** Least distance between any two plants, metres; 0.001 to 10,000. */
   spacing_m: number;
-  /** How much sizes differ: copies are up to this share smaller or larger; 0 to 0.9. */
+  /** Variation of size: copies are up to this share smaller or larger; 0 to 0.9. */
   vary: number;
 };
 
-/** What can be asked of the scene. */
+/** Commands of the scene. */
 export type SceneCommand =
-  | /** Names the scene. */
+  | /** Renames the scene. */
   {
     rename: string;
   }
-  | /** Adds a moved copy of a plant after the others, metres. */
+  | /** Adds a copy of a plant after the others, moved by an offset in metres. */
   {
     duplicate: [PlantId, [number, number, number]];
   }
-  | /** Adds moved copies of plants after the others, metres. */
+  | /** Adds copies of plants after the others, moved by an offset in metres. */
   {
     'duplicate-all': [PlantId[], [number, number, number]];
   }
-  | /** Moves, turns and sizes plants as one thing. */
+  | /** Moves, turns and scales plants as one unit. */
   {
     carry: [PlantId[], Carry];
   }
@@ -1893,50 +2071,50 @@ export type SceneView = {
   guest: 
     | PlantView
     | null;
-  /** In the document's order. */
+  /** Views in the document's order. */
   plants: PlantView[];
-  /** Of the document when it was made. */
+  /** Revision of the document at the evaluation. */
   revision: number;
 };
 
-/** A thing is made larger and turned about a place, and then moved. */
+/** A movement: scaling and rotation about a point, followed by a translation. */
 export type SetDown = {
-  /** What is larger and turned from; metres. */
+  /** Fixed point of the scaling and rotation; metres. */
   about: [number, number, number];
-  /** Metres. */
+  /** Offset, metres. */
   by: [number, number, number];
-  /** So many times as large, 0.01 to 100. */
+  /** Factor on the size, 0.01 to 100. */
   times: number;
-  /** A quaternion (x, y, z, w) of any length above 0. */
+  /** Rotation as a quaternion (x, y, z, w) of any length above 0. */
   turn: [number, number, number, number];
 };
 
-/** What a check that fails means. */
+/** Meaning of a failed check. */
 export type SeverityWord =
   | /** The result may be wrong. */
   "warning"
   | /** Nobody would accept the result. */
   "error";
 
-/** What came of an input. */
+/** Answer to an input. */
 export type ShapeAnswer = {
-  /** What is shown of the plant is out of date. */
+  /** Whether the view of the plant is out of date. */
   again: boolean;
-  /** A gesture is going on. */
+  /** Whether a gesture is in progress. */
   busy: boolean;
-  /** How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go. */
+  /** Motion of the held branch: the shell moves its triangles, which are not made again before the hand lets go. */
   carried: 
     | CarriedPose
     | null;
-  /** The edit of a gesture that ended: to be asked for as a command. */
+  /** The edit of a gesture that ended, to be requested as a command. */
   commit: 
     | HandEdit
     | null;
-  /** What grows in the hand, as far as it is shown. */
+  /** The growth in the hand, as far as it is shown. */
   grown: 
     | Grown
     | null;
-  /** On what the branch in the hand would be dropped, a row: once it was pulled off, or where it slid onto other wood. */
+  /** Row of the axis that the branch in the hand would be dropped on: once it was pulled off, or slid onto other wood. */
   host: number | null;
   /** The plane of symmetry that was placed. */
   mirror: 
@@ -1950,30 +2128,30 @@ export type ShapeAnswer = {
   plane: 
     | ViewPlane
     | null;
-  /** How far the branch that is held was turned, degrees. */
+  /** Rotation of the held branch so far, degrees. */
   turned_deg: number | null;
 };
 
-/** What can be asked of the edits by hand of a plant. */
+/** Commands on the hand edits of a plant. */
 export type ShapeCommand =
-  | /** Does one more, after the others. */
+  | /** Adds an edit after the others. */
   {
     add: HandEdit;
   }
-  | /** Does another in the place of that of a row. */
+  | /** Replaces the edit of a row. */
   {
     replace: [number, HandEdit];
   }
-  | /** Leaves the edit of a row out, or does it again. */
+  | /** Switches the edit of a row off or on. */
   {
     leave: [number, boolean];
   }
-  | /** Takes those of these rows away. */
+  | /** Removes the edits of these rows. */
   {
     remove: number[];
   };
 
-/** What the hand did. */
+/** Input of a hand. */
 export type ShapeInput =
   | /** It went down. */
   {
@@ -1989,7 +2167,7 @@ export type ShapeInput =
   }
   | /** It takes everything back. */
   "cancel"
-  | /** It turned what it holds, degrees. */
+  | /** It turned the held branch, degrees. */
   {
     twist: number;
   }
@@ -2000,9 +2178,9 @@ export type ShapeInput =
   | /** It goes from branch to branch by keys, without a pointer. */
   {
     walk: {
-      /** The branch that is meant now; none begins with what stands on the ground. */
+      /** The current branch; none begins with the stems on the ground. */
       from: number | null;
-      /** Where to. */
+      /** The step. */
       to: ShapeStep;
     };
   }
@@ -2014,73 +2192,73 @@ export type ShapeInput =
   {
     mirror: ShapePointer;
   }
-  | /** It holds on: what grows is a round older. */
+  | /** It keeps holding: the growing shoot is a round older. */
   "round"
-  | /** What grows has other numbers from now on. */
+  | /** The growing shoot has new settings from now on. */
   {
     grow: Growth;
   }
   | /** It changed its brush. */
   {
     brush: {
-      /** How many branches it makes. */
+      /** Density of the branches. */
       density: number;
-      /** How thick it is, metres. */
+      /** Radius of the brush, metres. */
       radius_m: number;
     };
   };
 
 /** A pointer in the plant's own coordinates, metres; unit vectors. */
 export type ShapePointer = {
-  /** Along its ray. */
+  /** Direction of its ray. */
   direction: [number, number, number];
-  /** Into the view. */
+  /** Direction into the view. */
   forward: [number, number, number];
-  /** How that controller is turned, a quaternion: x, y, z, w. */
+  /** Orientation of that controller, a quaternion: x, y, z, w. */
   hand?: [number, number, number, number] | null;
-  /** Where its ray starts. */
+  /** Start of its ray. */
   origin: [number, number, number];
-  /** 0 to 1. */
+  /** Pressure, 0 to 1. */
   pressure: number;
-  /** Where the tip of a tracked controller is: it works there, and not on a plane. */
+  /** Position of the tip of a tracked controller: it works there, and not on a plane. */
   tip?: [number, number, number] | null;
-  /** Upwards in the view. */
+  /** Upward direction of the view. */
   up: [number, number, number];
 };
 
-/** How a hand reaches: how far beside a branch it is still meant, `metres + per_metre * distance`, and where it works a second time. */
+/** Reach of a hand: the largest distance from a branch that is still meant, `metres + per_metre * distance`, and the plane in which its edits are mirrored. */
 export type ShapeReach = {
-  /** Not the branch but what bears it, so many up. */
+  /** Number of steps from the branch to its bearers. */
   bearers: number;
-  /** Close by. */
+  /** Distance close by, metres. */
   metres: number;
-  /** A plane of symmetry: what is drawn, brushed or grown on one side is made on the other. */
+  /** A plane of symmetry: branches drawn, brushed or grown on one side are mirrored to the other. */
   mirror?: 
     | Mirror
     | null;
-  /** More with each metre of distance. */
+  /** Increase with each metre of distance. */
   per_metre: number;
 };
 
-/** From one branch to another. */
+/** Step from one branch to another. */
 export type ShapeStep =
-  | /** The next that the same branch bears; after the last the first. */
+  | /** The next branch of the same bearer; after the last the first. */
   "next"
-  | /** The one before. */
+  | /** The previous branch of the same bearer. */
   "previous"
-  | /** What bears it. */
+  | /** Its bearer. */
   "bearer"
-  | /** The first that it bears. */
+  | /** The first branch that it bears. */
   "borne";
 
-/** Which side of a bound is plausible. */
+/** The plausible side of a bound. */
 export type SideWord =
   | /** The bound or more. */
   "at_least"
   | /** The bound or less. */
   "at_most";
 
-/** What can be asked of a sketch. */
+/** Commands that change a sketch. */
 export type SketchCommand =
   | /** Adds moved copies of strokes after the others, with what was said of them. */
   {
@@ -2110,11 +2288,11 @@ export type SketchCommand =
   {
     'cut-strokes': [StrokeId[], [number, number]];
   }
-  | /** Makes one stroke of several, in the place of the first. */
+  | /** Joins several strokes into one, in the place of the first. */
   {
     'join-strokes': StrokeId[];
   }
-  | /** Erases what lies within a radius of a path, of all strokes. */
+  | /** Erases the parts of all strokes that lie within a radius of a path. */
   {
     'rub-out': [[number, number][], number];
   }
@@ -2132,11 +2310,11 @@ export type SketchCommand =
   {
     'set-color': [StrokeId[], [number, number, number] | null];
   }
-  | /** Sets how wide the pen of strokes is, in the drawing's unit, or takes it away. */
+  | /** Sets the width of the pen of strokes, in the drawing's unit, or takes it away. */
   {
     'set-width': [StrokeId[], number | null];
   }
-  | /** Gives what is read from strokes a material, or takes it away. */
+  | /** Gives the organs of strokes a material, or takes it away. */
   {
     'set-material': [StrokeId[], 
       | OrganMaterial
@@ -2154,7 +2332,7 @@ export type SketchCommand =
   {
     'move-layer': [number, number];
   }
-  | /** Takes the layer of a row away; its strokes go to the sheet itself. */
+  | /** Removes the layer of a row; its strokes move to the sheet itself. */
   {
     'remove-layer': number;
   }
@@ -2162,9 +2340,9 @@ export type SketchCommand =
   {
     'put-on': [StrokeId[], string | null];
   }
-  | /** Erases every stroke, but those on layers that are hidden or locked. */
+  | /** Erases every stroke, except those on layers that are hidden or locked. */
   "clear"
-  | /** Sets how the drawing is understood. */
+  | /** Sets how the drawing is interpreted. */
   {
     'set-sketch': SketchSpec;
   }
@@ -2176,20 +2354,20 @@ export type SketchCommand =
   {
     'place-photo': PhotoPlace;
   }
-  | /** Takes the photograph away. */
+  | /** Removes the photograph. */
   "remove-photo"
-  | /** Shows its flowers at a day, or as they are drawn. */
+  | /** Shows its flowers on a day, or as they are drawn. */
   {
     'set-day': number | null;
   }
-  | /** Bears the leaf of another plant, or its own again. */
+  | /** Takes the leaf of another plant, or its own again. */
   {
     'set-leaf': 
       | PlantId
       | null;
   };
 
-/** Everything that can be asked of the sketch maker; saved with the document. */
+/** All settings of the sketch maker; saved with the document. */
 export type SketchSpec = {
   /** Depth of branches. */
   branch_depth: BranchDepth;
@@ -2207,7 +2385,7 @@ export type SketchSpec = {
   phototropism: number;
   /** Pipe model exponent t of Eq 6, 1.8 to 3. */
   pipe_exponent: number | null;
-  /** What every plant of the drawing is taken for, whatever it looks like. */
+  /** The kind that every plant is taken for, whatever it looks like. */
   read_as: 
     | Kind
     | null;
@@ -2227,19 +2405,19 @@ export type SketchState = {
   leaf: 
     | PlantId
     | null;
-  /** What lies under it. */
+  /** The photograph under it. */
   photo: 
     | PhotoState
     | null;
-  /** How it is understood. */
+  /** Settings for reading it. */
   sketch: SketchSpec;
-  /** How it is meshed. */
+  /** Settings for meshing it. */
   skin: SkinSpec;
   /** Its strokes in the order in which they were drawn. */
   strokes: StrokeState[];
 };
 
-/** How a plant is given its surface. */
+/** Settings of a plant's surface. */
 export type SkinSpec = {
   /** Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade; counts grow in proportion. */
   detail: number;
@@ -2249,7 +2427,7 @@ export type SkinSpec = {
     | null;
   /** Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. */
   sides: number;
-  /** Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not to the day's, so that triangles are the same at every day. */
+  /** Size in full bloom, metres, of a plant that changes from day to day: fineness is relative to that and not to the day's size, so that triangles are the same on every day. */
   steady_m: number | null;
   /** Give materials procedural textures; without, they have plain colours. */
   textures: boolean;
@@ -2257,7 +2435,16 @@ export type SkinSpec = {
   variation: number;
 };
 
-/** What one stroke is. */
+/** Distribution of the light of a sky. */
+export type SkyShape =
+  | /** Three times as bright at the zenith as at the horizon (Moon and Spencer 1942). */
+  "overcast"
+  | /** The same everywhere. */
+  "uniform"
+  | /** Bright around the sun (CIE S 011, type 12). */
+  "clear";
+
+/** The class of one stroke, named by the words of the command line's contract. */
 export type StrokeClass =
   | /** One petal or leaf as a nearly closed outline. */
   "blade"
@@ -2284,39 +2471,39 @@ export type StrokeClass =
   | /** Nothing of the plant. */
   "other";
 
-/** Names one stroke for as long as the document lives, whatever is drawn or erased around it. */
+/** Names one stroke for the lifetime of the document, whatever is drawn or erased around it. */
 export type StrokeId = number;
 
-/** In which mode a stroke was drawn (He and Cheng 2021, section 4.1). */
+/** Mode in which a stroke was drawn (He and Cheng 2021, section 4.1). */
 export type StrokeMode =
-  | /** A part of the plant: what it is, is found out. */
+  | /** A part of the plant: the stroke is classified. */
   "parts"
   | /** A contour to be filled with twigs. */
   "branch-contour"
   | /** A contour to be filled with leaves. */
   "leaf-contour";
 
-/** A line bent by pulling at it. */
+/** A bend of a line by a pull. */
 export type StrokePull = {
-  /** Where it was taken hold of; the nearest point of the line counts. */
+  /** Point of the grip; the nearest point of the line counts. */
   at: [number, number];
-  /** How far it was pulled. */
+  /** Vector of the pull. */
   by: [number, number];
-  /** How far along the line the pull reaches, above 0. */
+  /** Reach of the pull along the line, above 0. */
   reach: number;
 };
 
 /** One stroke. */
 export type StrokeReport = {
-  /** What it is. */
+  /** Its class. */
   class: string;
-  /** How sure that class is, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did. */
+  /** Confidence in that class, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did. */
   confidence: number;
   /** Its index in the drawing, from 0. */
   index: number;
-  /** What became of it. */
+  /** The organ made of it. */
   organ: string;
-  /** What decided the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules). */
+  /** Source of the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules). */
   source?: string;
 };
 
@@ -2330,15 +2517,15 @@ export type StrokeState = {
   color: [number, number, number] | null;
   /** Its name within the document. */
   id: StrokeId;
-  /** The name of its layer; none for the sheet itself. */
+  /** Name of its layer; none for the sheet itself. */
   layer: string | null;
   /** Its own material. */
   material: 
     | OrganMaterial
     | null;
-  /** In which mode it was drawn. */
+  /** Mode in which it was drawn. */
   mode: StrokeMode;
-  /** What it was shown as, clearly, when the last stroke was drawn. */
+  /** Class that it was clearly shown as when the last stroke was drawn. */
   shown: 
     | StrokeClass
     | null;
@@ -2346,11 +2533,11 @@ export type StrokeState = {
   width: number | null;
 };
 
-/** Turned and scaled about a point. */
+/** A rotation and scaling about a point. */
 export type StrokeTurn = {
-  /** What stays where it is, the drawing's unit. */
+  /** Fixed point, in the drawing's unit. */
   about: [number, number];
-  /** Counter-clockwise, degrees. */
+  /** Rotation counter-clockwise, degrees. */
   angle_deg: number;
   /** Factors of size along x and y before the turn; a negative one mirrors. */
   scale: [number, number];
@@ -2388,17 +2575,17 @@ export type TaperSpec = {
   s: number;
 };
 
-/** A picture by its number: pixels are asked for once. */
+/** A picture by its number: its pixels are fetched once. */
 export type TextureView = {
   /** Pixels down. */
   height: number;
-  /** Its name in [`crate::Workspace::texture`]. */
+  /** Its number for [`crate::Workspace::texture`], never reused for another picture. */
   number: number;
   /** Pixels across. */
   width: number;
 };
 
-/** What a measured thickness is to its vein's ball. */
+/** Relation of a measured thickness to its vein's ball. */
 export type ThicknessRule =
   | /** A calliper's reading: the ball's diameter. */
   "diameter"
@@ -2411,7 +2598,7 @@ export type TimingsMs = {
   classify: number;
   /** Filling, depth, radii. */
   depth: number;
-  /** Measuring how true the plant is to its drawing. */
+  /** Measuring the fidelity of the plant to its drawing. */
   fidelity: number;
   /** Measures and digest of the plant. */
   measure: number;
@@ -2431,20 +2618,20 @@ export type TimingsMs = {
   write: number;
 };
 
-/** What a tool does, with its settings. */
+/** Kind of a tool, with its settings. */
 export type ToolKind =
   | /** Point at a branch: it makes no edit. */
   "pick"
-  | /** Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes. */
+  | /** Drag a branch around its base: in the plane that faces the viewer, or after the tip of a controller. */
   "rotate"
-  | /** Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the ground, over the ground. */
+  | /** Drag a branch along its bearer, or with the tip of a controller to a new bearer; a branch on the ground, over the ground. */
   "move"
-  | /** Drag a copy of a branch to whatever bears it then; of what stands on the ground, over the ground. */
+  | /** Drag a copy of a branch to a new bearer; a copy of a branch on the ground, over the ground. */
   "copy"
-  | /** Click a branch: it is cut where it was clicked, or all of it. */
+  | /** Click a branch: it is cut at the clicked place, or removed. */
   {
     prune: {
-      /** All of it. */
+      /** Whether to remove all of it. */
       whole: boolean;
     };
   }
@@ -2453,7 +2640,7 @@ export type ToolKind =
   | /** Draw a branch from another one. */
   {
     sketch: {
-      /** How far the drawing plane leans back from the viewer, degrees; 0 faces the viewer. */
+      /** Tilt of the drawing plane away from the viewer, degrees; 0 faces the viewer. */
       tilt_deg: number;
       /** Twigs on it, 0 to 4. */
       twigs: number;
@@ -2462,7 +2649,7 @@ export type ToolKind =
   | /** Brush, and branches grow along the stroke. */
   {
     brush: {
-      /** 0.1 to 10. */
+      /** Density, 0.1 to 10. */
       density: number;
       /** Radius at full pressure, metres, above 0. */
       radius_m: number;
@@ -2472,16 +2659,16 @@ export type ToolKind =
   {
     grow: Growth;
   }
-  | /** Draw an outline around what is to be filled. */
+  | /** Draw an outline around the space to be filled. */
   {
     silhouette: {
-      /** 0.1 to 10. */
+      /** Density, 0.1 to 10. */
       density: number;
-      /** Where it is drawn, if that was placed in space; without, it faces the viewer and lies in the plant's middle. */
+      /** Plane of the outline, if it was placed in space; without it, the plane faces the viewer through the plant's middle. */
       plane?: 
         | ViewPlane
         | null;
-      /** Cut off what leaves it. */
+      /** Whether parts outside it are cut off. */
       trim: boolean;
     };
   }
@@ -2495,9 +2682,9 @@ export type ToolKind =
     };
   };
 
-/** What can be asked of a tree. */
+/** Commands of a tree. */
 export type TreeCommand =
-  | /** Takes another spec, such as that of a preset. */
+  | /** Replaces the spec, for example by that of a preset. */
   {
     'set-spec': [string | null, Json];
   }
@@ -2513,54 +2700,54 @@ export type TreeCommand =
   {
     'set-obstacle': [number, NamedObstacle];
   }
-  | /** Moves the obstacle of a row by so many metres, in the coordinates of the tree. */
+  | /** Moves the obstacle of a row by an offset in metres, in the coordinates of the tree. */
   {
     'move-obstacle': [number, [number, number, number]];
   }
-  | /** Sets the obstacle of a row down elsewhere, turned and larger or smaller, in the coordinates of the tree. */
+  | /** Moves, turns and scales the obstacle of a row, in the coordinates of the tree. */
   {
     'set-down-obstacle': [number, SetDown];
   }
-  | /** Names the obstacle of a row. */
+  | /** Renames the obstacle of a row. */
   {
     'rename-obstacle': [number, string];
   }
-  | /** Takes the obstacle of a row away. */
+  | /** Removes the obstacle of a row. */
   {
     'remove-obstacle': number;
   }
-  | /** Sets how it is meshed. */
+  | /** Sets how the tree is meshed. */
   {
     'set-skin': SkinSpec;
   }
-  | /** Bears the leaf of another plant, or its own again. */
+  | /** Takes the leaf of another plant, or its own again. */
   {
     'set-leaf': 
       | PlantId
       | null;
   };
 
-/** What a tree is grown from. */
+/** Settings of a tree. */
 export type TreeState = {
   /** The plant whose leaf it bears. */
   leaf: 
     | PlantId
     | null;
-  /** What it grows around. */
+  /** Obstacles that it grows around. */
   obstacles: NamedShape[];
   /** The species that the spec came from. */
   preset: string | null;
-  /** How it is meshed. */
+  /** Settings for meshing it. */
   skin: SkinSpec;
   /** The spec, without obstacles. */
   spec: Record<string, Json>;
 };
 
-/** A pull in one direction: light from above, weight downwards, wind. */
+/** An influence in one direction: light from above, weight downwards, wind. */
 export type Tropism = {
-  /** Where to; any length above 0. */
+  /** Direction of growth; any length above 0. */
   direction: [number, number, number];
-  /** Relative to the pull of free space (which is 1), -10 to 10. */
+  /** Strength relative to the pull of free space (which is 1), -10 to 10. */
   strength: number;
 };
 
@@ -2568,7 +2755,7 @@ export type Tropism = {
 export type Turn = {
   /** The axis, of any length above 0; right-handed. */
   about: [number, number, number];
-  /** How far. */
+  /** The angle. */
   degrees: number;
 };
 
@@ -2579,7 +2766,9 @@ export type Unit =
   | /** Centimetres. */
   "cm"
   | /** Millimetres. */
-  "mm";
+  "mm"
+  | /** International feet. */
+  "ft";
 
 /** Which axis of a file points up. */
 export type UpAxis =
@@ -2588,7 +2777,7 @@ export type UpAxis =
   | /** +Z, as in Blender and most survey data: file (x, y, z) is inside (x, z, -y). */
   "z";
 
-/** Which parameters an interpolating side vein has. */
+/** Parameters of an interpolating side vein. */
 export type VeinParameters =
   | /** Those of the blade, so that the vein lies on it. */
   "shared"
@@ -2597,17 +2786,17 @@ export type VeinParameters =
 
 /** A plane in which an outline is drawn. */
 export type ViewPlane = {
-  /** Where (0, 0) of the outline lies, metres. */
+  /** Position of the point (0, 0) of the outline, metres. */
   origin: [number, number, number];
-  /** To the viewer's right. */
+  /** Direction to the viewer's right. */
   right: [number, number, number];
-  /** Upwards as the viewer sees it; made to stand at a right angle to `right`. */
+  /** Direction upwards as the viewer sees it; made perpendicular to `right`. */
   up: [number, number, number];
 };
 
-/** What was not as one might expect. */
+/** A warning. */
 export type WarningView = {
-  /** A word that stays, such as `unlike-a-plant`. */
+  /** A stable word, such as `unlike-a-plant`. */
   code: string;
   /** Numbers and names in it. */
   fields: Record<string, string>;
@@ -2617,15 +2806,15 @@ export type WarningView = {
 
 /** The materials that a person gave to kinds of organs. */
 export type WearState = {
-  /** Of all leaves. */
+  /** Material of all leaves. */
   leaf: 
     | OrganMaterial
     | null;
-  /** Of all petals. */
+  /** Material of all petals. */
   petal: 
     | OrganMaterial
     | null;
-  /** Of all sepals and bracts. */
+  /** Material of all sepals and bracts. */
   sepal: 
     | OrganMaterial
     | null;

@@ -70,19 +70,58 @@ export function united(a: Box, b: Box): Box {
   };
 }
 
-/** Distance from a point to a polyline of rows of `step` numbers. */
-export function distance(points: Float64Array, step: number, x: number, y: number): number {
-  let best = Infinity;
+/** The nearest point of a polyline of rows of `step` numbers to a point, and how far it is. */
+export function nearest(
+  points: Float64Array,
+  step: number,
+  x: number,
+  y: number,
+): { at: [number, number]; distance: number } {
+  let best = { at: [NaN, NaN] as [number, number], distance: Infinity };
   let [px, py] = [points[0] ?? NaN, points[1] ?? NaN];
   for (let i = 0; i + 1 < points.length; i += step) {
     const [qx, qy] = [points[i]!, points[i + 1]!];
     const [dx, dy] = [qx - px, qy - py];
     const length = dx * dx + dy * dy;
     const s = length > 0 ? Math.min(1, Math.max(0, ((x - px) * dx + (y - py) * dy) / length)) : 0;
-    best = Math.min(best, Math.hypot(px + s * dx - x, py + s * dy - y));
+    const at: [number, number] = [px + s * dx, py + s * dy];
+    const distance = Math.hypot(at[0] - x, at[1] - y);
+    if (distance < best.distance) best = { at, distance };
     [px, py] = [qx, qy];
   }
   return best;
+}
+
+/** Distance from a point to a polyline of rows of `step` numbers. */
+export function distance(points: Float64Array, step: number, x: number, y: number): number {
+  return nearest(points, step, x, y).distance;
+}
+
+/** Whether a point lies within a closed outline, by how often a ray from it crosses that. */
+export function isWithin(outline: readonly (readonly [number, number])[], x: number, y: number): boolean {
+  let inside = false;
+  outline.forEach(([bx, by], i) => {
+    const [ax, ay] = outline.at(i - 1)!;
+    if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) inside = !inside;
+  });
+  return inside;
+}
+
+/** The share of the length of a polyline of rows of `step` numbers that lies within a closed outline, 0 to 1. */
+export function shareWithin(
+  points: Float64Array,
+  step: number,
+  outline: readonly (readonly [number, number])[],
+): number {
+  let [whole, within] = [0, 0];
+  for (let i = step; i + 1 < points.length; i += step) {
+    const [ax, ay, bx, by] = [points[i - step]!, points[i - step + 1]!, points[i]!, points[i + 1]!];
+    const length = Math.hypot(bx - ax, by - ay);
+    whole += length;
+    if (isWithin(outline, (ax + bx) / 2, (ay + by) / 2)) within += length;
+  }
+  if (whole > 0) return within / whole;
+  return points.length > 1 && isWithin(outline, points[0]!, points[1]!) ? 1 : 0;
 }
 
 /** How much of a polyline of rows of `step` numbers lies in a box, in its unit. */

@@ -1,6 +1,7 @@
 /** What the sheet draws: lines of the pen, the frame round what is selected, the dots of the paper. */
 import { type Frame, HALF, handlesOf } from './frame';
 import { type Box, centreline, outline, toScreen, type Viewport } from './geometry';
+import type { Symmetry } from './symmetry';
 
 /** A line in pixels from the drawing's origin: filled within its outline, or stroked along it. */
 export interface Line {
@@ -109,4 +110,68 @@ export function drawGrid(
       c.fillRect(sx - 0.75, sy - 0.75, 1.5, 1.5);
     }
   }
+}
+
+/** The outline of a lasso that is being drawn, closed as it would be now. */
+export function drawLasso(
+  c: CanvasRenderingContext2D,
+  path: readonly (readonly [number, number])[],
+  color: string,
+): void {
+  c.beginPath();
+  for (const [x, y] of path) c.lineTo(x, y);
+  c.closePath();
+  c.strokeStyle = c.fillStyle = color;
+  c.lineWidth = 1.5;
+  c.setLineDash([5, 4]);
+  c.stroke();
+  c.setLineDash([]);
+  c.globalAlpha = 0.08;
+  c.fill();
+  c.globalAlpha = 1;
+}
+
+export function drawRing(
+  c: CanvasRenderingContext2D,
+  [x, y]: readonly [number, number],
+  radius: number,
+  color: string,
+): void {
+  c.strokeStyle = color;
+  c.lineWidth = 1.5;
+  c.beginPath();
+  c.arc(x, y, radius, 0, 2 * Math.PI);
+  c.stroke();
+}
+
+/** How large the centre of a symmetry is drawn, pixels. */
+const CENTRE = 5;
+
+/** The line of symmetry, or the centre and the lines that part what is drawn round it, over a sheet of this size. */
+export function drawSymmetry(
+  c: CanvasRenderingContext2D,
+  view: Viewport,
+  symmetry: Symmetry,
+  [w, h]: readonly [number, number],
+  color: string,
+): void {
+  c.strokeStyle = color;
+  c.lineWidth = 1;
+  c.setLineDash([3, 5]);
+  c.beginPath();
+  if (symmetry.kind === 'mirror') {
+    const [x] = toScreen(view, symmetry.x, 0);
+    c.moveTo(x, 0);
+    c.lineTo(x, h);
+  } else {
+    const [x, y] = toScreen(view, ...symmetry.about);
+    for (let k = 0; k < symmetry.count; k += 1) {
+      const angle = (2 * Math.PI * k) / symmetry.count;
+      c.moveTo(x, y);
+      c.lineTo(x + (w + h) * Math.sin(angle), y - (w + h) * Math.cos(angle));
+    }
+  }
+  c.stroke();
+  c.setLineDash([]);
+  if (symmetry.kind === 'turns') drawRing(c, toScreen(view, ...symmetry.about), CENTRE, color);
 }

@@ -25,29 +25,6 @@ export class Pen {
     return [this.rows[4 * i]!, this.rows[4 * i + 1]!, this.rows[4 * i + 3]!];
   }
 
-  /** The same stroke on the other side of an upright line. */
-  mirrored(axis: number): Float64Array {
-    return Float64Array.from(this.rows, (value, i) => (i % 4 === 0 ? 2 * axis - value : value));
-  }
-
-  /** Whether the stroke lies on one side of an upright line, by a good part of its size. */
-  beside(axis: number): boolean {
-    let [low, high, bottom, top] = [Infinity, -Infinity, Infinity, -Infinity];
-    for (let i = 0; i < this.length; i += 1) {
-      const [x, y] = this.row(i);
-      [low, high, bottom, top] = [
-        Math.min(low, x - axis),
-        Math.max(high, x - axis),
-        Math.min(bottom, y),
-        Math.max(top, y),
-      ];
-    }
-    const far = Math.max(Math.abs(low), Math.abs(high));
-    // What begins on the line (a leaf on its stem) still lies beside it.
-    const over = low < 0 && high > 0 ? Math.min(-low, high) : 0;
-    return far > 0.08 * (top - bottom) && over < 0.25 * far;
-  }
-
   add(e: PointerEvent, left: number, top: number, view: Viewport, last = false): void {
     const [x, y] = [e.clientX - left, e.clientY - top];
     if (!this.at) this.started = e.timeStamp;

@@ -1,30 +1,26 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
-import { inkOf } from '../colours';
-import type { StrokePoints } from '../protocol';
+import type { StrokePoints } from '../worker/protocol';
 import type { PhotoState, SketchCommand, SketchState, StrokeMode } from '../wire';
+import type { Placed } from './align';
 import { dragged, type Frame, frameOf, type Handle, handleAt } from './frame';
-import {
-  boxOf,
-  distance,
-  fitted,
-  lengthWithin,
-  toDrawing,
-  toScreen,
-  united,
-  zoomed,
-  type Box,
-  type Viewport,
-} from './geometry';
-import { drawFrame, drawGrid, drawLine, INK, LEAST_INK, type Line, lineThrough } from './ink';
-import { Pen } from './pen';
-import { both, reaches, roomOf, type Stale, staleOf, THICKEST } from './stale';
+import { type Box, boxOf, fitted, toDrawing, type Viewport, zoomed } from './geometry';
+import { MEETS, Painter, type UnderHand } from './painter';
+import type { Pen } from './pen';
+import { joined } from './snap';
+import { both, type Stale, staleOf } from './stale';
+import { type Stroke, Strokes } from './strokes';
+import { copiesOf, type Symmetry } from './symmetry';
+import { Taps } from './taps';
+import { type Inked, type Paper, shownOf, UnderPen } from './underpen';
 
-export type Tool = StrokeMode | 'erase' | 'rub' | 'select' | 'pull';
+export type Tool = StrokeMode | 'erase' | 'rub' | 'select' | 'lasso' | 'pull' | 'dropper';
+
+/** Tools that leave what is chosen as it is. */
+const CHOOSERS: readonly Tool[] = ['select', 'lasso', 'dropper'];
 
 export interface SheetEvents {
-  /** `mirror`: the same stroke on the other side of the line of symmetry. */
-  stroke(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void;
-  draft(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void;
+  stroke(mode: StrokeMode, inked: Inked): void;
+  draft(mode: StrokeMode, inked: Inked): void;
   undraft(): void;
   erase(ids: number[]): void;
   /** A drag that changes strokes or the photograph: what it comes to replaces what it came to before. */
@@ -34,23 +30,12 @@ export interface SheetEvents {
   /** `frame`: round what is selected, pixels. */
   selected(ids: number[], frame: Frame | undefined): void;
   viewport(): void;
-}
-
-interface Stroke {
-  id: number;
-  mode: StrokeMode;
-  points: Float64Array;
-  box: Box;
-  organ: string | undefined;
-  /** It may be something else. */
-  doubtful: boolean;
-  /** Of its pen, where it is not that of the sheet: CSS, units of the drawing. */
-  color: string | undefined;
-  width: number | undefined;
-  /** Its layer is not hidden; it is neither hidden nor locked. */
-  seen: boolean;
-  free: boolean;
-  line: (Line & { scale: number }) | undefined;
+  /** So many fingers tapped at once. */
+  tapped(fingers: number): void;
+  /** A colour was taken up, CSS; nothing where there is none. */
+  picked(color: string | undefined): void;
+  /** The centre of the symmetry was put. */
+  centred(): void;
 }
 
 /** How near a pointer must come to a stroke, in pixels: a fingertip is coarser. */
@@ -58,36 +43,29 @@ const REACH = { mouse: 8, pen: 8, touch: 18 } as const;
 const reachOf = (type: string): number => REACH[type as keyof typeof REACH] ?? 8;
 /** How far along a line a pull at it reaches, pixels. */
 const PULL = 90;
-/** How strong a stroke is drawn that may be something else. */
-const DOUBT = 0.45;
 /** A drag begins when the pointer is so far from where it went down, pixels. */
 const SLIP = 4;
 
 type Act =
-  | { kind: 'draw'; pen: Pen; mode: StrokeMode }
+  | { kind: 'draw'; stroke: UnderPen }
   | { kind: 'erase'; ids: Set<number> }
   | { kind: 'move'; from: [number, number]; moved: boolean }
   | { kind: 'frame'; handle: Handle; box: Box; from: [number, number]; moved: boolean }
   | { kind: 'pull'; id: number; from: [number, number]; moved: boolean }
   | { kind: 'rub'; path: [number, number][]; radius: number }
   | { kind: 'band'; from: [number, number]; to: [number, number]; add: boolean }
+  | { kind: 'lasso'; path: [number, number][]; add: boolean; under: number | undefined }
+  | { kind: 'centre' }
   | { kind: 'photo'; place: PhotoState['place']; from: [number, number]; moved: boolean }
   | { kind: 'pan'; x: number; y: number };
 
 export class Sheet {
   readonly element = document.createElement('div');
-  private readonly base = document.createElement('canvas');
-  private readonly top = document.createElement('canvas');
-  private strokes: Stroke[] = [];
-  /** What is seen of them, from below upwards. */
-  private order: Stroke[] = [];
-  private ownColours = false;
-  private pen: { color: string | null; width: number | null } = { color: null, width: null };
-  private points = new Map<number, Float64Array>();
-  private selection = new Set<number>();
-  private view: Viewport = { scale: 1, x: 0, y: 0 };
+  readonly strokes = new Strokes();
+  private readonly painter: Painter;
+  /** Where the drawing lies on the screen. */
+  view: Viewport = { scale: 1, x: 0, y: 0 };
   private tool: Tool = 'parts';
-  private dark = false;
   private act: Act | undefined;
   private pointers = new Map<number, [number, number]>();
   private actor = -1;
@@ -101,19 +79,31 @@ export class Sheet {
   /** Its width and height, pixels. */
   private room: [number, number] = [0, 0];
   private pinch: { distance: number; x: number; y: number } | undefined;
-  private draftOrgan: string | undefined;
   /** A stroke that was lifted and is not in the document yet: shown until it is. */
-  private pending: { pen: Pen; mode: StrokeMode } | undefined;
-  private photo: PhotoState | null = null;
-  private image: ImageBitmap | undefined;
+  private pending: { inked: Inked; mode: StrokeMode } | undefined;
+  private readonly taps = new Taps();
+  photo: PhotoState | null = null;
+  image: ImageBitmap | undefined;
   /** Where a stroke was pressed last, in the drawing's unit. */
   pressed: [number, number] | undefined;
   /** Drags move the photograph. */
   placing = false;
-  /** The line of symmetry, if there is one: its x in the drawing. */
-  private axis: number | undefined;
+  /** The next press puts the centre of the symmetry. */
+  centring = false;
+  private mirrors: Symmetry | undefined;
+  /** Ends of strokes meet what is drawn. */
+  meets = true;
   /** Strength of the stabiliser, 0 to 3. */
   steady = 1;
+  private readonly paper: Paper = {
+    place: ([x, y]) => toDrawing(this.view, x, y),
+    met: (samples) => (this.meets ? joined(samples, this.strokes.order, MEETS / this.view.scale) : samples),
+    copies: (samples) => copiesOf(this.mirrors, samples),
+    changed: () => {
+      if (this.act?.kind === 'draw') this.draft(this.act.stroke);
+      this.redraw();
+    },
+  };
   private stale: Stale = 'all';
   private frame = 0;
   private placed = false;
@@ -126,7 +116,8 @@ export class Sheet {
     this.element.tabIndex = 0;
     this.element.setAttribute('role', 'application');
     this.element.setAttribute('aria-label', label);
-    this.element.append(this.base, this.top);
+    this.painter = new Painter(this);
+    this.element.append(this.painter.base, this.painter.top);
     const on = this.element.addEventListener.bind(this.element);
     on('pointerdown', (e) => this.down(e));
     on('pointermove', (e) => this.move(e));
@@ -160,49 +151,17 @@ export class Sheet {
   // What is shown -----------------------------------------------------------------------------------------------
 
   setState(state: Pick<SketchState, 'strokes' | 'photo' | 'layers'>, fresh: StrokePoints[]): void {
-    const [photo, order] = [this.photo, this.order];
+    const { photo, strokes } = this;
+    const { order } = strokes;
     this.photo = state.photo;
     if (!state.photo) this.placing = false;
-    for (const { id, points } of fresh) this.points.set(id, points);
-    const before = new Map(this.strokes.map((s) => [s.id, s]));
-    const there = new Set(state.strokes.map((s) => s.id));
-    for (const id of [...this.points.keys()]) if (!there.has(id)) this.points.delete(id);
-    const layers = new Map(state.layers.map((l, row) => [l.name, { ...l, row }]));
-    const rows = new Map<number, number>();
-    this.strokes = state.strokes.flatMap(({ id, mode, color, width, layer }) => {
-      const points = this.points.get(id);
-      const box = points && boxOf(points, 3);
-      if (!points || !box) return [];
-      const known = before.get(id);
-      // Where it was pressed is no place of what it is now.
-      if (known?.points !== points && this.selection.has(id)) this.pressed = undefined;
-      const same = known?.points === points && known.mode === mode && known.width === (width ?? undefined);
-      const line = same ? known.line : undefined;
-      const on = layer === null ? undefined : layers.get(layer);
-      rows.set(id, on?.row ?? -1);
-      const seen = !on?.hidden;
-      return [
-        {
-          id,
-          mode,
-          points,
-          box,
-          organ: known?.organ,
-          doubtful: known?.doubtful ?? false,
-          color: color ? `rgb(${color.join(' ')})` : undefined,
-          width: width ?? undefined,
-          seen,
-          free: seen && !on?.locked,
-          line,
-        },
-      ];
-    });
-    this.order = this.strokes.filter((s) => s.seen).sort((a, b) => rows.get(a.id)! - rows.get(b.id)!);
-    const free = new Set(this.strokes.filter((s) => s.free).map((s) => s.id));
+    // Where it was pressed is no place of what it is now.
+    if (strokes.set(state, fresh).length > 0) this.pressed = undefined;
+    const free = new Set(strokes.free.map((s) => s.id));
     this.pending = undefined;
-    const left = [...this.selection].filter((id) => free.has(id));
-    if (left.length !== this.selection.size) this.select(left);
-    this.redraw(photo || this.photo ? 'all' : staleOf(order, this.order));
+    const left = this.selected.filter((id) => free.has(id));
+    if (left.length !== strokes.selection.size) this.select(left);
+    this.redraw(photo || this.photo ? 'all' : staleOf(order, strokes.order));
   }
 
   setImage(image: ImageBitmap): void {
@@ -213,22 +172,23 @@ export class Sheet {
 
   /** Shows lines in the colours of their pens, and not of what they were understood as. */
   setOwnColours(on: boolean): void {
-    this.ownColours = on;
+    this.painter.ownColours = on;
     this.redraw('all');
   }
 
   /** The pen that is held: colour, and width in pixels. */
   setPen(pen: { color: string | null; width: number | null }): void {
-    this.pen = pen;
+    this.painter.pen = pen;
   }
 
-  setAxis(axis: number | undefined): void {
-    this.axis = axis;
+  get symmetry(): Symmetry | undefined {
+    return this.mirrors;
+  }
+
+  set symmetry(symmetry: Symmetry | undefined) {
+    this.mirrors = symmetry;
+    if (symmetry?.kind !== 'turns') this.centring = false;
     this.redraw('all');
-  }
-
-  get symmetric(): boolean {
-    return this.axis !== undefined;
   }
 
   /** The stroke that was lifted will not come. */
@@ -238,24 +198,20 @@ export class Sheet {
   }
 
   /** What each row of the document was understood as; a row beyond the document is the stroke being drawn. */
-  setOrgans(organs: Map<number, string>, doubtful: ReadonlySet<number>): void {
-    let changed: Stale;
-    this.strokes.forEach((s, row) => {
-      if (s.organ !== organs.get(row) || s.doubtful !== doubtful.has(row)) changed = both(changed, roomOf(s));
-      [s.organ, s.doubtful] = [organs.get(row), doubtful.has(row)];
-    });
-    this.draftOrgan = organs.get(this.strokes.length);
+  setOrgans(organs: Map<number, string>, doubtful: ReadonlySet<number>, left: ReadonlySet<number>): void {
+    const changed = this.strokes.setOrgans(organs, doubtful, left);
+    this.painter.draftOrgan = organs.get(this.strokes.all.length);
     this.redraw(changed);
   }
 
   setTool(tool: Tool): void {
     this.tool = tool;
     this.element.dataset['tool'] = tool;
-    if (tool !== 'select') this.select([]);
+    if (!CHOOSERS.includes(tool)) this.select([]);
   }
 
   setDark(dark: boolean): void {
-    this.dark = dark;
+    this.painter.dark = dark;
     this.redraw('all');
   }
 
@@ -264,16 +220,17 @@ export class Sheet {
   }
 
   get selected(): number[] {
-    return [...this.selection];
+    return [...this.strokes.selection];
   }
 
   /** All of these but what lies on layers that are hidden or locked; `pressed`: where one of them was pressed, in the drawing's unit. */
   select(wanted: number[], pressed?: [number, number]): void {
-    const closed = new Set(this.strokes.filter((s) => !s.free).map((s) => s.id));
+    const { selection, all } = this.strokes;
+    const closed = new Set(all.filter((s) => !s.free).map((s) => s.id));
     const ids = wanted.filter((id) => !closed.has(id));
-    const same = ids.length === this.selection.size && ids.every((id) => this.selection.has(id));
+    const same = ids.length === selection.size && ids.every((id) => selection.has(id));
     this.pressed = pressed ?? (same ? this.pressed : undefined);
-    this.selection = new Set(ids);
+    this.strokes.selection = new Set(ids);
     const box = this.selectedBox();
     this.events.selected(ids, box && frameOf(this.view, box));
     this.redraw();
@@ -281,17 +238,18 @@ export class Sheet {
 
   /** Says again what is selected: it moved on the screen, or what is known of it changed. */
   reselect(): void {
-    if (this.selection.size > 0) this.select(this.selected);
+    if (this.strokes.selection.size > 0) this.select(this.selected);
   }
 
   /** Selects the stroke after (or before) the selected one. */
   selectNext(step: number): void {
-    const free = this.strokes.filter((s) => s.free);
-    const n = free.length;
-    if (n === 0) return;
-    const now = free.findIndex((s) => this.selection.has(s.id));
-    const next = now < 0 ? (step > 0 ? 0 : n - 1) : (now + step + n) % n;
-    this.select([free[next]!.id]);
+    const next = this.strokes.next(step);
+    if (next !== undefined) this.select([next]);
+  }
+
+  /** What is selected, and where each stroke of it lies. */
+  get chosen(): Placed[] {
+    return this.strokes.chosen;
   }
 
   /** One unit of the drawing per this many screen pixels. */
@@ -301,13 +259,11 @@ export class Sheet {
 
   /** The part of the drawing that is seen. */
   seen(): Box {
-    const [left, top] = toDrawing(this.view, 0, 0);
-    const [right, bottom] = toDrawing(this.view, ...this.room);
-    return { left, top, right, bottom };
+    return this.painter.seen;
   }
 
   get isEmpty(): boolean {
-    return this.strokes.length === 0 && !this.photo && !this.pending && this.act?.kind !== 'draw';
+    return this.strokes.all.length === 0 && !this.photo && !this.pending && this.act?.kind !== 'draw';
   }
 
   fit(): void {
@@ -320,7 +276,7 @@ export class Sheet {
           top: p.place.y + p.height,
         }
       : undefined;
-    const box = this.order.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
+    const box = this.strokes.order.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
     const [w, h] = this.room;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
     this.redraw('all');
@@ -361,11 +317,15 @@ export class Sheet {
       if (this.act) this.abort();
       this.pinch = undefined;
       this.pointers.clear();
+      this.taps.forget();
     }
-    if (touch) this.pointers.set(e.pointerId, at);
+    if (touch) {
+      this.pointers.set(e.pointerId, at);
+      this.taps.down(e.pointerId, at, e.timeStamp);
+    }
     this.element.setPointerCapture(e.pointerId);
     const fingers = touch ? this.pointers.size : 0;
-    if (fingers === 2) {
+    if (fingers > 1) {
       this.abort();
       this.pinch = this.pinchNow();
       return;
@@ -382,9 +342,14 @@ export class Sheet {
     } else if (e.button === 5 || e.buttons === 32 || this.tool === 'erase') {
       this.act = { kind: 'erase', ids: new Set() };
       this.rub(at, reachOf(e.pointerType));
+    } else if (this.centring) {
+      this.act = { kind: 'centre' };
+      this.putCentre(at);
     } else if (this.placing && this.photo) {
       this.act = { kind: 'photo', place: this.photo.place, from: at, moved: false };
-    } else if (this.tool === 'select') {
+    } else if (this.tool === 'dropper') {
+      this.events.picked(this.colourAt(at, reachOf(e.pointerType)));
+    } else if (this.tool === 'select' || this.tool === 'lasso') {
       this.grab(at, e);
     } else if (this.tool === 'pull') {
       const hit = this.hit(at, reachOf(e.pointerType));
@@ -395,9 +360,9 @@ export class Sheet {
       this.events.begin('rub');
       this.rubAlong();
     } else {
-      const pen = new Pen(this.steady);
-      this.act = { kind: 'draw', pen, mode: this.tool };
-      this.trace(e, pen, false);
+      const stroke = new UnderPen(this.tool, this.steady, at, this.paper);
+      this.act = { kind: 'draw', stroke };
+      this.trace(e, stroke.pen, false);
       this.redraw();
     }
   }
@@ -411,19 +376,28 @@ export class Sheet {
       return;
     }
     const hit = this.hit(at, reach);
+    if (this.tool === 'lasso' && !(hit && this.strokes.selection.has(hit.id) && !e.shiftKey)) {
+      this.act = { kind: 'lasso', path: [at], add: e.shiftKey, under: hit?.id };
+      return;
+    }
     if (!hit) {
       this.act = { kind: 'band', from: at, to: at, add: e.shiftKey };
       return;
     }
-    const chosen = new Set(this.selection);
-    if (e.shiftKey) {
-      if (!chosen.delete(hit.id)) chosen.add(hit.id);
-    } else if (!chosen.has(hit.id)) {
+    this.take(hit.id, at, e.shiftKey);
+    this.act = { kind: 'move', from: at, moved: false };
+  }
+
+  /** Selects a stroke that was pressed; `more`: beside the others, or no longer. */
+  private take(id: number, at: [number, number], more: boolean): void {
+    const chosen = new Set(this.strokes.selection);
+    if (more) {
+      if (!chosen.delete(id)) chosen.add(id);
+    } else if (!chosen.has(id)) {
       chosen.clear();
-      chosen.add(hit.id);
+      chosen.add(id);
     }
     this.select([...chosen], toDrawing(this.view, at[0], at[1]));
-    this.act = { kind: 'move', from: at, moved: false };
   }
 
   private trace(e: PointerEvent, pen: Pen, last: boolean): void {
@@ -432,15 +406,37 @@ export class Sheet {
     for (const c of all.length > 0 ? all : [e]) pen.add(c, left, top, this.view, last);
   }
 
-  /** The stroke on the other side of the line of symmetry, if it has one there. */
-  private mirrored(pen: Pen): Float64Array | undefined {
-    const { axis } = this;
-    return axis !== undefined && pen.beside(axis) ? pen.mirrored(axis) : undefined;
+  /** The stroke as it is now: the plant is shown with it. */
+  private draft(stroke: UnderPen): void {
+    if (!stroke.isDot) this.events.draft(stroke.mode, shownOf(stroke.inked));
+  }
+
+  private putCentre(at: [number, number]): void {
+    if (this.mirrors?.kind === 'turns')
+      this.symmetry = { ...this.mirrors, about: toDrawing(this.view, at[0], at[1]) };
+  }
+
+  /** The colour of the stroke there, or of the photograph. */
+  private colourAt(at: [number, number], reach: number): string | undefined {
+    const own = this.hit(at, reach)?.color;
+    const { photo, image } = this;
+    if (own || !photo || !image) return own;
+    const [x, y] = toDrawing(this.view, at[0], at[1]);
+    const { place, height } = photo;
+    const [u, v] = [(x - place.x) / place.width, (place.y + height - y) / height];
+    const c = new OffscreenCanvas(1, 1).getContext('2d');
+    if (!c || u < 0 || u >= 1 || v < 0 || v >= 1) return undefined;
+    c.drawImage(image, Math.floor(u * image.width), Math.floor(v * image.height), 1, 1, 0, 0, 1, 1);
+    const [r, g, b] = c.getImageData(0, 0, 1, 1).data;
+    return `rgb(${r} ${g} ${b})`;
   }
 
   private move(e: PointerEvent): void {
     const at = this.place(e);
-    if (this.pointers.has(e.pointerId)) this.pointers.set(e.pointerId, at);
+    if (this.pointers.has(e.pointerId)) {
+      this.pointers.set(e.pointerId, at);
+      this.taps.move(e.pointerId, at);
+    }
     if (this.pinch && e.pointerType === 'touch' && this.pointers.size >= 2) {
       const now = this.pinchNow();
       this.view = zoomed(this.view, now.distance / this.pinch.distance, this.pinch.x, this.pinch.y);
@@ -457,8 +453,9 @@ export class Sheet {
     const act = this.act;
     switch (act.kind) {
       case 'draw':
-        this.trace(e, act.pen, false);
-        if (act.pen.length > 2) this.events.draft(act.mode, act.pen.samples, this.mirrored(act.pen));
+        this.trace(e, act.stroke.pen, false);
+        act.stroke.moved(at);
+        this.draft(act.stroke);
         break;
       case 'erase':
         this.rub(at, reachOf(e.pointerType));
@@ -483,6 +480,14 @@ export class Sheet {
       }
       case 'band':
         act.to = at;
+        break;
+      case 'lasso': {
+        const [x, y] = act.path.at(-1)!;
+        if (Math.hypot(at[0] - x, at[1] - y) >= 2) act.path.push(at);
+        break;
+      }
+      case 'centre':
+        this.putCentre(at);
         break;
       case 'pan':
         this.view = { ...this.view, x: this.view.x + at[0] - act.x, y: this.view.y + at[1] - act.y };
@@ -520,6 +525,12 @@ export class Sheet {
     if (e.pointerType === 'pen') this.penDown = false;
     this.pointers.delete(e.pointerId);
     if (this.pointers.size < 2) this.pinch = undefined;
+    const fingers = this.taps.up(e.pointerId, e.timeStamp, kept);
+    if (fingers > 0) {
+      this.abort();
+      this.events.tapped(fingers);
+      return;
+    }
     if (!this.act || e.pointerId !== this.actor) return;
     if (!kept) {
       this.abort();
@@ -529,11 +540,12 @@ export class Sheet {
     this.act = undefined;
     switch (act.kind) {
       case 'draw':
-        this.trace(e, act.pen, true);
-        // A dot is a slip of the hand.
-        if (act.pen.length > 2) {
-          this.pending = { pen: act.pen, mode: act.mode };
-          this.events.stroke(act.mode, act.pen.samples, this.mirrored(act.pen));
+        this.trace(e, act.stroke.pen, true);
+        act.stroke.end();
+        if (!act.stroke.isDot) {
+          const { inked, mode } = act.stroke;
+          this.pending = { inked, mode };
+          this.events.stroke(mode, inked);
         } else {
           this.events.undraft();
         }
@@ -553,6 +565,13 @@ export class Sheet {
       case 'band':
         this.band(act.from, act.to, act.add);
         break;
+      case 'lasso':
+        this.lasso(act);
+        break;
+      case 'centre':
+        this.centring = false;
+        this.events.centred();
+        break;
       case 'pan':
         break;
     }
@@ -563,7 +582,10 @@ export class Sheet {
   private abort(): void {
     const act = this.act;
     this.act = undefined;
-    if (act?.kind === 'draw') this.events.undraft();
+    if (act?.kind === 'draw') {
+      act.stroke.end();
+      this.events.undraft();
+    }
     if (act?.kind === 'rub' || (act && 'moved' in act && act.moved)) this.events.end(false);
     this.redraw('all');
   }
@@ -571,10 +593,20 @@ export class Sheet {
   private band(from: [number, number], to: [number, number], add: boolean): void {
     const [x0, y0] = toDrawing(this.view, Math.min(from[0], to[0]), Math.max(from[1], to[1]));
     const [x1, y1] = toDrawing(this.view, Math.max(from[0], to[0]), Math.min(from[1], to[1]));
-    const inside = this.strokes.filter(
-      (s) => s.free && s.box.left >= x0 && s.box.right <= x1 && s.box.bottom >= y0 && s.box.top <= y1,
-    );
-    this.select([...(add ? this.selection : []), ...inside.map((s) => s.id)]);
+    const inside = this.strokes.inBand({ left: x0, right: x1, bottom: y0, top: y1 });
+    this.select([...(add ? this.selected : []), ...inside]);
+  }
+
+  /** Takes what the lasso has round it; a mere tap takes the stroke under it. */
+  private lasso({ path, add, under }: Extract<Act, { kind: 'lasso' }>): void {
+    const far = Math.max(...path.map(([x, y]) => Math.hypot(x - path[0]![0], y - path[0]![1])));
+    if (far < SLIP) {
+      if (under !== undefined) this.take(under, path[0]!, add);
+      else if (!add) this.select([]);
+      return;
+    }
+    const outline = path.map(([x, y]) => toDrawing(this.view, x, y));
+    this.select([...(add ? this.selected : []), ...this.strokes.inLasso(outline)]);
   }
 
   private pinchNow(): { distance: number; x: number; y: number } {
@@ -611,19 +643,7 @@ export class Sheet {
   }
 
   private hit(at: [number, number], reach: number): Stroke | undefined {
-    const [x, y] = toDrawing(this.view, at[0], at[1]);
-    const r = reach / this.view.scale;
-    let best: Stroke | undefined;
-    let least = r;
-    for (const s of this.order) {
-      if (!s.free) continue;
-      const b = s.box;
-      if (x < b.left - r || x > b.right + r || y < b.bottom - r || y > b.top + r) continue;
-      const d = distance(s.points, 3, x, y);
-      // The later stroke lies on top.
-      if (d <= least) [best, least] = [s, d];
-    }
-    return best;
+    return this.strokes.hit(toDrawing(this.view, at[0], at[1]), reach / this.view.scale);
   }
 
   private rub(at: [number, number], reach: number): void {
@@ -637,8 +657,7 @@ export class Sheet {
 
   /** Round what is selected, in the drawing's unit. */
   selectedBox(): Box | undefined {
-    const [first, ...others] = this.strokes.filter((s) => this.selection.has(s.id)).map((s) => s.box);
-    return first && others.reduce(united, first);
+    return this.strokes.chosenBox;
   }
 
   /** How much of what is selected lies there, pixels. */
@@ -646,22 +665,33 @@ export class Sheet {
     const [x0, y0] = toDrawing(this.view, left, bottom);
     const [x1, y1] = toDrawing(this.view, right, top);
     const box = { left: x0, right: x1, bottom: y0, top: y1 };
-    const chosen = this.strokes.filter((s) => this.selection.has(s.id));
-    return chosen.reduce((sum, s) => sum + lengthWithin(s.points, 3, box), 0) * this.view.scale;
+    return this.strokes.chosenWithin(box) * this.view.scale;
+  }
+
+  /** What is under the hand, to be shown. */
+  get hand(): UnderHand {
+    const { act, tool } = this;
+    const drawn = act?.kind === 'draw' ? act.stroke : undefined;
+    // While it is dragged, the strokes show what comes of it.
+    const box = CHOOSERS.includes(tool) && !act ? this.selectedBox() : undefined;
+    return {
+      live: drawn ?? this.pending,
+      drawn,
+      lasso: act?.kind === 'lasso' ? act.path : undefined,
+      band: act?.kind === 'band' ? act : undefined,
+      erased: act?.kind === 'erase' ? act.ids : undefined,
+      frame: box && frameOf(this.view, box),
+    };
   }
 
   // Drawing -----------------------------------------------------------------------------------------------------
 
   private resize(): void {
-    const ratio = Math.min(3, devicePixelRatio || 1);
     const { clientWidth: w, clientHeight: h } = this.element;
     // Where the view fills the page, the sheet is as it was.
     if (w === 0 || h === 0) return;
     this.room = [w, h];
-    for (const canvas of [this.base, this.top]) {
-      canvas.width = Math.max(1, Math.round(w * ratio));
-      canvas.height = Math.max(1, Math.round(h * ratio));
-    }
+    this.painter.resize(w, h);
     if (!this.placed) {
       this.placed = true;
       this.fit();
@@ -674,169 +704,9 @@ export class Sheet {
     if (this.frame) return;
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
-      if (this.stale) this.drawBase(this.stale);
+      if (this.stale) this.painter.drawBase(this.stale);
       this.stale = undefined;
-      this.drawTop();
+      this.painter.drawTop();
     });
-  }
-
-  private penOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D | undefined {
-    const c = canvas.getContext('2d');
-    if (!c) return undefined;
-    const ratio = canvas.width / Math.max(1, this.element.clientWidth);
-    c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    c.lineCap = 'round';
-    c.lineJoin = 'round';
-    return c;
-  }
-
-  private drawBase(stale: Box | 'all'): void {
-    const c = this.penOf(this.base);
-    if (!c) return;
-    c.save();
-    const part = stale === 'all' ? undefined : this.clip(c, stale);
-    c.clearRect(0, 0, this.element.clientWidth, this.element.clientHeight);
-    this.under(c);
-    drawGrid(c, this.view, part ?? this.seen(), this.dark);
-    const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
-    for (const s of this.order) {
-      if (part && !reaches(s.box, part, THICKEST * (this.wideOf(s) / this.view.scale))) continue;
-      c.globalAlpha = gone?.has(s.id) ? 0.15 : s.doubtful ? DOUBT : 1;
-      this.ink(c, this.lineOf(s), s.mode, s.organ, s.color);
-    }
-    c.restore();
-  }
-
-  /** Lets only the pixels round a part of the drawing be drawn; the part that they are. */
-  private clip(c: CanvasRenderingContext2D, part: Box): Box {
-    const ratio = c.getTransform().a;
-    // Of a line as wide as the sheet's, and whole pixels.
-    const around = THICKEST * INK + 2;
-    const [left, top] = toScreen(this.view, part.left, part.top);
-    const [right, bottom] = toScreen(this.view, part.right, part.bottom);
-    const low = (at: number): number => Math.floor((at - around) * ratio) / ratio;
-    const high = (at: number): number => Math.ceil((at + around) * ratio) / ratio;
-    const [x0, y0, x1, y1] = [low(left), low(top), high(right), high(bottom)];
-    c.beginPath();
-    c.rect(x0, y0, x1 - x0, y1 - y0);
-    c.clip();
-    // A dot of the paper, too, may reach in from outside.
-    const [x, y] = toDrawing(this.view, x0 - 2, y1 + 2);
-    const [far, up] = toDrawing(this.view, x1 + 2, y0 - 2);
-    return { left: x, bottom: y, right: far, top: up };
-  }
-
-  private drawTop(): void {
-    const c = this.penOf(this.top);
-    if (!c) return;
-    c.clearRect(0, 0, this.element.clientWidth, this.element.clientHeight);
-    const live = this.act?.kind === 'draw' ? this.act : this.pending;
-    // A layer that was only cleared may be shown with its old picture by browsers that draw without a graphics card.
-    this.top.style.visibility =
-      live || this.selection.size > 0 || this.act?.kind === 'band' ? 'visible' : 'hidden';
-    for (const s of this.strokes) {
-      if (!this.selection.has(s.id)) continue;
-      c.globalAlpha = 0.3;
-      drawLine(
-        c,
-        this.view,
-        lineThrough(s.points, 3, this.view.scale, false),
-        this.accent(),
-        8 + this.lineOf(s).wide,
-      );
-      c.globalAlpha = 1;
-      this.ink(c, this.lineOf(s), s.mode, s.organ, s.color);
-    }
-    // While it is dragged, the strokes show what comes of it.
-    const box = this.tool === 'select' && !this.act ? this.selectedBox() : undefined;
-    if (box) drawFrame(c, frameOf(this.view, box), [this.accent(), this.dark ? '#20261f' : '#ffffff']);
-    if (live) {
-      const { pen, mode } = live;
-      const inked = (samples: Float64Array): void =>
-        this.ink(
-          c,
-          lineThrough(samples, 4, this.view.scale, mode === 'parts', this.pen.width ?? INK),
-          mode,
-          this.draftOrgan,
-          this.pen.color ?? undefined,
-        );
-      inked(pen.samples);
-      const { axis } = this;
-      if (axis !== undefined && pen.beside(axis)) {
-        c.globalAlpha = 0.55;
-        inked(pen.mirrored(axis));
-        c.globalAlpha = 1;
-      }
-    }
-    if (this.act?.kind === 'band') {
-      const { from, to } = this.act;
-      c.strokeStyle = this.accent();
-      c.setLineDash([5, 4]);
-      c.strokeRect(
-        Math.min(from[0], to[0]),
-        Math.min(from[1], to[1]),
-        Math.abs(to[0] - from[0]),
-        Math.abs(to[1] - from[1]),
-      );
-      c.setLineDash([]);
-    }
-  }
-
-  private accent(): string {
-    return this.dark ? '#8ecbff' : '#1769aa';
-  }
-
-  /** The photograph and the line of symmetry. */
-  private under(c: CanvasRenderingContext2D): void {
-    const p = this.photo;
-    if (p && this.image) {
-      const { opacity, width } = p.place;
-      const [x, y] = toScreen(this.view, p.place.x, p.place.y + p.height);
-      c.globalAlpha = opacity;
-      c.imageSmoothingQuality = 'high';
-      c.drawImage(this.image, x, y, width * this.view.scale, p.height * this.view.scale);
-      c.globalAlpha = 1;
-    }
-    if (this.axis !== undefined) {
-      const [x] = toScreen(this.view, this.axis, 0);
-      c.strokeStyle = this.accent();
-      c.lineWidth = 1;
-      c.setLineDash([3, 5]);
-      c.beginPath();
-      c.moveTo(x, 0);
-      c.lineTo(x, this.element.clientHeight);
-      c.stroke();
-      c.setLineDash([]);
-    }
-  }
-
-  private ink(
-    c: CanvasRenderingContext2D,
-    line: Line,
-    mode: StrokeMode,
-    organ?: string,
-    color?: string,
-  ): void {
-    const fallback =
-      mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
-    if (mode !== 'parts') c.setLineDash([9, 7]);
-    const own = this.ownColours ? color : undefined;
-    drawLine(c, this.view, line, own ?? inkOf(organ ?? fallback, this.dark), line.wide);
-    c.setLineDash([]);
-  }
-
-  /** Pixels; a wide pen is as wide as it is in the drawing, but never so thin that it is not seen. */
-  private wideOf(s: Stroke): number {
-    return s.width === undefined ? INK : Math.max(LEAST_INK, s.width * this.view.scale);
-  }
-
-  /** The line of a stroke at the sheet's scale; made again only when that changes. */
-  private lineOf(s: Stroke): Line {
-    if (s.line?.scale !== this.view.scale)
-      s.line = {
-        ...lineThrough(s.points, 3, this.view.scale, s.mode === 'parts', this.wideOf(s)),
-        scale: this.view.scale,
-      };
-    return s.line;
   }
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { CODES } from '../wire';
-import { setLanguage, tell, warning } from './index';
+import { setLanguage, tell, warning } from '.';
 import { zhErrors } from './zh-errors';
 
 const placeholders = (text: string): string[] => [...text.matchAll(/\{(\w+)\}/g)].map((m) => m[1]!);

@@ -1,10 +1,10 @@
 import { readFileSync } from 'node:fs';
 import { beforeAll, describe, expect, it, vi } from 'vitest';
-import { drawingSchema, named, type Schema } from '../schema';
+import { drawingSchema, named, type Schema } from '../making/schema';
 import { initSync, studio_schema } from '../wasm/burgeon_wasm';
-import { FORMATS } from '../wire';
+import { ENGINES, FORMATS } from '../wire';
 import { en } from './en';
-import { fieldName, helpOf, plainHelp, setLanguage, unitOf, wordOf } from './index';
+import { fieldName, helpOf, plainHelp, setLanguage, unitOf, wordOf } from '.';
 import { zhHelp } from './zh-help';
 
 interface Species {
@@ -78,6 +78,7 @@ beforeAll(() => {
     said.texts.set(`preset.${key}`, plainHelp(about));
   }
   for (const { key } of [...flowers, ...materials]) said.words.add(key);
+  for (const [word, { about }] of Object.entries(ENGINES)) said.texts.set(`engine.${word}`, plainHelp(about));
   for (const [word, { about }] of Object.entries(FORMATS)) said.texts.set(`format.${word}`, plainHelp(about));
   expect(said.fields.size).toBeGreaterThan(100);
   expect(said.texts.size).toBeGreaterThan(200);

@@ -69,6 +69,11 @@ export function number(n: number): string {
   return new Intl.NumberFormat(language === 'zh' ? 'zh-CN' : 'en').format(n);
 }
 
+/** Words in a row. */
+export function listOf(words: readonly string[]): string {
+  return words.join(language === 'zh' ? '、' : ', ');
+}
+
 /** Bytes as megabytes, of three digits or so. */
 export function megabytes(bytes: number): string {
   const mb = bytes / 1e6;

@@ -486,6 +486,11 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.Light.shadow.full': '全光照 C，大于 0。',
   'tree.Light.shadow.layers': '其下受遮荫的层数，1 至 32。',
   'tree.Light.shadow.voxel_m': '体素的边长，米；默认为节间长度的两倍。',
+  'tree.Light.sky':
+    '天空的光：每个节间有一片平放的方叶。Q 为阴天的光照到它上面的量与空旷处之比，乘以 full；方向朝向光最多的一侧。',
+  'tree.Light.sky.full': '空旷处的 Q，大于 0，默认 1。',
+  'tree.Light.sky.leaf_m': '叶片的边长，米；默认为节间长度。芽不受自己叶片的遮荫。',
+  'tree.Light.sky.lines': '46 个方向中每个方向的光线数，1,000 至 262,144，默认 32,768：越多越准，也越慢。',
   'tree.Light.space': '空间殖民：若芽是其视锥内某个空闲标记点最近的芽，则 Q = 1，否则为 0。',
   'tree.Light.space.envelope': '标记点所在的空间，以树根为原点。',
   'tree.Light.space.half_angle_deg': '视锥的半张角，度；45。',
@@ -697,4 +702,11 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'preset.fig': '无花果：低矮开展的树冠，大裂叶生于粗壮的灰色枝上',
   'preset.mangrove': '美洲红树：拱形支柱根上浓密深绿的树冠',
   'preset.boston-ivy': '墙上的爬山虎：薄薄一层裂叶，如瓦片般下垂',
+  'engine.three': 'three.js 及以它为基础的程序：.glb，压缩，带供着色器使用的风',
+  'engine.blender': 'Blender：.glb，不压缩，风写成属性',
+  'engine.unity': 'Unity（用 glTFast）：.glb，层级与碰撞体在同一文件中，带供着色器使用的风',
+  'engine.unreal': 'Unreal Engine：.usda，骨架的关节上带叶（Nanite）；或 .glb，带碰撞形状的静态网格',
+  'engine.godot': 'Godot 4：.glb，带碰撞形状与供着色器使用的风；层级由它自己生成',
+  'engine.isaac': 'Isaac Sim 及其他读取 USD 的程序：.usda 或 .usdz，米，+Z 向上',
+  'engine.print': '3D 打印机：一个封闭的实体，.stl 或 .ply，毫米，+Z 向上，立在平底上',
 };

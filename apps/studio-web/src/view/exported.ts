@@ -1,6 +1,6 @@
 /** What an export would write, in the place of the plants: its meshes at one level of detail, moved by wind. */
 import * as THREE from 'three';
-import type { ExportedArrays, SentExport } from '../protocol';
+import type { ExportedArrays, SentExport } from '../worker/protocol';
 import type { Looks } from './plant';
 import type { StandIn } from './plants';
 import { blown, type Gust, gustOf } from './wind';

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { sheetShape } from '../film';
+import { sheetShape } from '../exporting/film';
 import { posesFrom } from './camera';
 import { metres, stepFor } from './guides';
 import { FIRST, lightOf, OF_PRESET, PRESETS, presetOf, settingFrom, sunAt } from './moods';

@@ -1,6 +1,6 @@
 /** The hand that places a plant: handles that move, turn and size it, in steps or freely. */
 import * as THREE from 'three';
-import type { Gizmo } from '../scene';
+import type { Gizmo } from '../placing/scene';
 import type { Carry } from '../wire';
 import type { GizmoEvents, Handles } from './gizmo';
 

@@ -1,6 +1,6 @@
 /** The plant as three.js meshes, updated in place where only numbers changed. */
 import * as THREE from 'three';
-import type { PartArrays, Sent, TexturePixels } from '../protocol';
+import type { PartArrays, Sent, TexturePixels } from '../worker/protocol';
 import type { CarriedPose, MaterialView, ObstacleView, PlantView, TextureView } from '../wire';
 import { Carrying, type HeldRows } from './carry';
 
@@ -16,6 +16,9 @@ const isTraced = ({ name, kind, texture }: MaterialView): boolean =>
 type Look = THREE.MeshStandardMaterial | THREE.MeshLambertMaterial | THREE.MeshBasicMaterial;
 
 /** Textures and materials of all plants. */
+/** The key of the material of plain colours: others are JSON. */
+const PLAIN = 'plain';
+
 export class Looks {
   /** What photographs write into alpha: 0 where a picture is toned later, which leaves them as they are. */
   readonly photoAlpha = { value: 1 };
@@ -126,6 +129,15 @@ export class Looks {
       )}`;
     };
     return material;
+  }
+
+  /** A surface in the very colours of its vertices. */
+  plain(): THREE.Material {
+    const known = this.materials.get(PLAIN);
+    if (known) return known;
+    const plain = this.photo({ vertexColors: true, side: THREE.DoubleSide, wireframe: this.wire });
+    this.materials.set(PLAIN, plain);
+    return plain;
   }
 
   material(look: MaterialView, tinted: boolean): THREE.Material {
@@ -249,6 +261,11 @@ export class PlantMeshes {
     const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
     if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
     return box;
+  }
+
+  /** The material of one of its parts. */
+  materialOf(part: number): THREE.Material {
+    return this.meshes[part]!.material as THREE.Material;
   }
 
   /** Takes its materials anew. */

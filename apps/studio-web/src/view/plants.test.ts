@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import * as THREE from 'three';
 import { afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
-import type { PartArrays, Sent } from '../protocol';
+import type { PartArrays, Sent } from '../worker/protocol';
 import { initSync, studio_schema, StudioSession } from '../wasm/burgeon_wasm';
 import type { DocumentState, ExportRequest, NewMaker, PlantView, SceneView } from '../wire';
 import { Looks } from './plant';
@@ -28,6 +28,10 @@ const WHOLE: ExportRequest = {
   one_file: false,
   sway: false,
   impostor: false,
+  packed: false,
+  instances: false,
+  named: false,
+  engine: null,
 };
 /** So long a test may take on a slow machine, ms. */
 const PATIENCE_MS = 120_000;

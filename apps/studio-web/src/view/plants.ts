@@ -1,7 +1,8 @@
 /** The plants of the scene as they are shown: their meshes, where they stand, and what stands in their place. */
 import * as THREE from 'three';
-import { texturesOf, type Sent } from '../protocol';
+import { texturesOf, type Sent } from '../worker/protocol';
 import type { PlantState, PlantView as Seen, SceneView } from '../wire';
+import { Crowd } from './crowd';
 import { fillShapes, type Looks, PlantMeshes, type Shapes } from './plant';
 import { SharedShapes } from './shapes';
 
@@ -29,6 +30,7 @@ export interface Shown {
 export class Plants {
   readonly named = new Map<number, PlantMeshes>();
   private readonly shapes = new SharedShapes();
+  private readonly crowd: Crowd;
   /** A model that is viewed instead of the scene. */
   guest: PlantMeshes | undefined;
   standIn: StandIn | undefined;
@@ -41,7 +43,9 @@ export class Plants {
   constructor(
     private readonly looks: Looks,
     private readonly holder: THREE.Group,
-  ) {}
+  ) {
+    this.crowd = new Crowd(holder);
+  }
 
   get chosen(): PlantMeshes | undefined {
     return this.guest ?? (this.current === null ? undefined : this.named.get(this.current));
@@ -163,6 +167,18 @@ export class Plants {
       plant.place.rotation.set(0, front ? 0 : THREE.MathUtils.degToRad(state.yaw_deg), 0);
       plant.place.scale.setScalar(front ? 1 : state.scale);
     }
+    // What a hand may take is drawn by itself.
+    const still = [...this.named].filter(
+      ([id, plant]) =>
+        id !== this.current && !this.held.has(id) && plant.place.visible && plant.group.visible,
+    );
+    this.crowd.show(still.map(([, plant]) => plant));
+  }
+
+  /** Takes materials anew. */
+  relook(): void {
+    for (const plant of this.all) plant.relook();
+    this.crowd.relook(this.all);
   }
 
   /** The box around all that is seen, metres. */

@@ -1,5 +1,5 @@
 /** What copies share, by the name that the core gives to the meshes. */
-import type { Sent } from '../protocol';
+import type { Sent } from '../worker/protocol';
 import type { PlantView as Seen, SceneView } from '../wire';
 import { fillShapes, type PlantMeshes, type Shapes } from './plant';
 

@@ -1,6 +1,6 @@
 /** A small picture of another plant, on the stage of the view. */
 import * as THREE from 'three';
-import type { Sent } from '../protocol';
+import type { Sent } from '../worker/protocol';
 import type { Looks } from './plant';
 import type { Stage } from './stage';
 

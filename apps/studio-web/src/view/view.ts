@@ -1,10 +1,10 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
-import type { Sent } from '../protocol';
+import type { Sent } from '../worker/protocol';
 import type { MirrorPlane } from './mirror';
 import type { CarriedPose, Carry, Mirror, PlantState, SceneView, ShapePointer, ShapeReach } from '../wire';
 import type { HeldRows } from './carry';
-import type { Gizmo } from '../scene';
+import type { Gizmo } from '../placing/scene';
 import type { Box } from '../sheet/geometry';
 import { t } from '../text';
 import { onScreen, pointerOf, reachOf } from './aim';
@@ -115,7 +115,8 @@ export class PlantView {
       },
       grained: (grain: number) => this.renderer.setPixelRatio(grain),
       finished: () => {
-        if (this.element.dataset['rests'] === '1') this.element.dataset['finished'] = '1';
+        if (this.element.dataset['rests'] === '1')
+          this.element.dataset['finished'] = String(this.frames.grain);
       },
     };
     this.frames = new Frames(this.slow, drawer, { moving: pixels, still: FINEST });
@@ -178,6 +179,7 @@ export class PlantView {
       begin: () => {
         this.dragging = true;
         this.plants.held = new Set(this.selection);
+        this.stand();
         this.rig.controls.enabled = false;
         events.placeBegin();
       },
@@ -654,7 +656,7 @@ export class PlantView {
   }
 
   private relook(): void {
-    for (const plant of this.plants.all) plant.relook();
+    this.plants.relook();
     this.plants.standIn?.relook();
   }
 

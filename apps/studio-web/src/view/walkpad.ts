@@ -1,6 +1,6 @@
 /** A stick on the screen for whoever walks by a finger, buttons that rise and sink, and one that ends it. */
 import { t } from '../text';
-import { button, el } from '../ui';
+import { button, el } from '../page/ui';
 import type { WalkMode } from './walk';
 
 export interface PadEvents {

@@ -1,8 +1,8 @@
 /** What the board at the wrist has on each of its pages: which keys, and what each does. */
-import type { Shaping } from '../shaping';
+import type { Shaping } from '../shaping/shaping';
 import { t, type TextKey, tOf } from '../text';
-import { isBrush, isNumber, rowOf, SHAPE_WORDS } from '../tools';
-import type { Written } from '../exporting';
+import { isBrush, isNumber, rowOf, SHAPE_WORDS } from '../shaping/tools';
+import type { Written } from '../exporting/exporting';
 import type { HeadsetEvents } from './events';
 import type { ObstacleKind } from './placing';
 import type { Key } from './wrist';

@@ -1,5 +1,5 @@
 /** The way into a headset, where the browser has one. The rest is loaded only there. */
-import type { Shaping } from '../shaping';
+import type { Shaping } from '../shaping/shaping';
 import type { PlantView } from '../view/view';
 import type { HeadsetEvents, Mode } from './events';
 import type { Headset } from './headset';

@@ -1,5 +1,5 @@
 /** What the headset asks of the page. */
-import type { Written } from '../exporting';
+import type { Written } from '../exporting/exporting';
 import type { GestureRecord, Obstacle, SetDown } from '../wire';
 import type { Found } from './recorder';
 

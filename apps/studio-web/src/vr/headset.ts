@@ -3,11 +3,11 @@
  * settings and history. What a tool does is the core's.
  */
 import * as THREE from 'three';
-import { grownText, type Shaping, type SpaceReach } from '../shaping';
-import { setSetting, setting } from '../store';
+import { grownText, type Shaping, type SpaceReach } from '../shaping/shaping';
+import { setSetting, setting } from '../keeping/store';
 import { t, type TextKey } from '../text';
-import { isBrush, rowOf } from '../tools';
-import { hearNotes } from '../ui';
+import { isBrush, rowOf } from '../shaping/tools';
+import { hearNotes } from '../page/ui';
 import type { PlantView } from '../view/view';
 import type { Growth, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
 import { type Board, rowsOf } from './board';

@@ -1,5 +1,5 @@
 /** What hands do, written down as `burgeon.gestures/1`: every request in the order in which the core did it. */
-import type { Request } from '../protocol';
+import type { Request } from '../worker/protocol';
 import type { GestureDeed, GestureRecord, HandEdit, PlantNumbers, ShapeAnswer } from '../wire';
 
 /** Most steps of a record, as the core reads them. */

@@ -1,6 +1,6 @@
 /** What a hand draws, as it is seen while it does: a tube in the air, in a colour and as thick as the person likes. */
 import * as THREE from 'three';
-import { setSetting, setting } from '../store';
+import { setSetting, setting } from '../keeping/store';
 
 /** Points of a tube at most, and corners around each. */
 const MOST = 2048;

@@ -1,6 +1,6 @@
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
-import type { Request } from '../protocol';
+import type { Request } from '../worker/protocol';
 import { obstacleAround } from '../view/obstacles';
 import type { HandEdit } from '../wire';
 import { Carried } from './carried';

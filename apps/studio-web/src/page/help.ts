@@ -1,0 +1,26 @@
+/** The dialog that says how the page is used, with the sheet of keys. */
+import { keySheet } from './commands';
+import { t } from '../text';
+import { tour } from './tour';
+import { dialog, el } from './ui';
+
+export function openHelp(): void {
+  const keys = el('dl', { class: 'keys' });
+  for (const row of keySheet()) keys.append(el('dt', {}, el('kbd', {}, row.keys)), el('dd', {}, t(row.text)));
+  const texts = (
+    ['help.draw', 'help.pan', 'help.hold', 'help.taps', 'help.correct', 'help.shape', 'help.drop'] as const
+  ).map((k) => el('li', {}, t(k)));
+  const again = el(
+    'button',
+    {
+      type: 'button',
+      class: 'link',
+      onclick: () => {
+        d.close();
+        tour();
+      },
+    },
+    t('tour.again'),
+  );
+  const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, again);
+}
