@@ -2,8 +2,10 @@
 
     burgeon grow oak -o oak.xml
     python gust.py oak.xml --seconds 60 --speed 12
+    python gust.py oak.xml --seconds 6 --speed 35 --film oak.webp --strip oak.png
 
-It needs the packages `mujoco` and `numpy`. It ends with 1 if anything is not finite, or bends further than its limits.
+It needs the packages `mujoco` and `numpy`, and for films `pillow` and a library of OpenGL that draws without a window
+(`MUJOCO_GL=egl` or `osmesa`). It ends with 1 if anything is not finite, or bends further than its limits.
 """
 
 import argparse
@@ -75,7 +77,60 @@ def break_stalks(data, limits):
     return broken
 
 
-def run(path, seconds=60.0, speed=12.0):
+class Film:
+    """Pictures of a simulation at even times, from the side that the wind blows across."""
+
+    RATE = 20  # pictures a second
+    WIDTH, HEIGHT = 320, 320
+
+    def __init__(self, model, data):
+        import mujoco
+        import numpy as np
+
+        model.vis.headlight.ambient[:] = 0.5
+        model.vis.headlight.diffuse[:] = 0.6
+        model.vis.global_.offwidth, model.vis.global_.offheight = self.WIDTH, self.HEIGHT
+        self.renderer = mujoco.Renderer(model, self.HEIGHT, self.WIDTH)
+        self.camera = mujoco.MjvCamera()
+        tops = data.geom_xpos[:, 2] + model.geom_rbound
+        self.camera.lookat[:] = [0, 0, 0.5 * tops.max()]
+        self.camera.distance = 1.35 * max(tops.max(), 2 * np.abs(data.geom_xpos[:, :2]).max())
+        self.camera.azimuth, self.camera.elevation = 90, -5
+        self.option = mujoco.MjvOption()
+        # Groups 2 and 3 are what is seen and what is touched.
+        self.option.geomgroup[:] = [1, 1, 1, 0, 0, 0]
+        self.pictures = []
+
+    def take(self, data):
+        """Takes a picture if it is time."""
+        if data.time * self.RATE < len(self.pictures):
+            return
+        import numpy as np
+
+        self.renderer.update_scene(data, self.camera, self.option)
+        picture = self.renderer.render().copy()
+        # What nothing was drawn on is black: make it the sky.
+        self.renderer.enable_segmentation_rendering()
+        empty = self.renderer.render()[..., 0] < 0
+        self.renderer.disable_segmentation_rendering()
+        picture[empty] = np.array([214, 228, 240], np.uint8)
+        self.pictures.append(picture)
+
+    def save(self, film=None, strip=None, across=6):
+        """Writes the pictures as a film, and `across` of them side by side."""
+        import numpy as np
+        from PIL import Image
+
+        if film:
+            first, *others = [Image.fromarray(p) for p in self.pictures]
+            first.save(film, save_all=True, append_images=others, duration=1000 // self.RATE, loop=0, quality=70)
+        if strip:
+            rows = np.linspace(0, len(self.pictures) - 1, across).round().astype(int)
+            whole = Image.fromarray(np.concatenate([self.pictures[k] for k in rows], axis=1))
+            whole.quantize(48, dither=Image.Dither.NONE).save(strip, optimize=True)
+
+
+def run(path, seconds=60.0, speed=12.0, film=None, strip=None):
     """Simulates a plant in gusts; what became of it."""
     import mujoco
     import numpy as np
@@ -87,8 +142,11 @@ def run(path, seconds=60.0, speed=12.0):
     steps = math.ceil(seconds / model.opt.timestep)
     most, broken, stepping = 0.0, 0, 0.0
     mujoco.mj_forward(model, data)
+    taken = Film(model, data) if film or strip else None
     for step in range(steps):
         push(model, data, gusts)
+        if taken:
+            taken.take(data)
         start = time.thread_time()
         mujoco.mj_step(model, data)
         stepping += time.thread_time() - start
@@ -98,13 +156,23 @@ def run(path, seconds=60.0, speed=12.0):
             most = max(most, float(np.abs(data.qpos[hinges]).max()))
         if not math.isfinite(most) or not np.isfinite(data.qvel).all():
             break
-    bad = sum(int(data.warning[w].number) for w in (
-        mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC))
+    if taken:
+        taken.save(film, strip)
+    bad = sum(
+        int(data.warning[w].number)
+        for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+    )
     finite = bool(np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all())
     return {
-        "hinges": len(hinges), "bodies": model.nbody - 1, "kilograms": float(model.body_mass.sum()),
-        "step_ms": 1e3 * model.opt.timestep, "simulated_s": float(data.time),
-        "steps_a_second": steps / stepping, "most_rad": most, "stalks": len(limits), "broken": broken,
+        "hinges": len(hinges),
+        "bodies": model.nbody - 1,
+        "kilograms": float(model.body_mass.sum()),
+        "step_ms": 1e3 * model.opt.timestep,
+        "simulated_s": float(data.time),
+        "steps_a_second": steps / stepping,
+        "most_rad": most,
+        "stalks": len(limits),
+        "broken": broken,
         "exploded": not finite or bad > 0 or most > 2.0,
     }
 
@@ -114,17 +182,21 @@ def main():
     parser.add_argument("files", nargs="+")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--speed", type=float, default=12.0, help="metres a second at a height of 10 m")
+    parser.add_argument("--film", help="a film of the first file, .webp or .gif")
+    parser.add_argument("--strip", help="six pictures of the first file side by side, .png")
     asked = parser.parse_args()
     try:
         import mujoco  # noqa: F401
     except ImportError:
         sys.exit("skipped: the package `mujoco` is not there; `pip install mujoco numpy` installs it")
     failed = False
-    for path in asked.files:
-        made = run(path, asked.seconds, asked.speed)
+    for row, path in enumerate(asked.files):
+        shown = (asked.film, asked.strip) if row == 0 else (None, None)
+        made = run(path, asked.seconds, asked.speed, *shown)
         failed |= made["exploded"]
-        print(path, ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"
-                              for key, value in made.items()))
+        print(
+            path, ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}" for key, value in made.items())
+        )
     sys.exit(1 if failed else 0)
 
 
