@@ -185,7 +185,7 @@ impl Organs<'_> {
         }
         let stages = self.out.join("stages.toml");
         add("stages", &opening, &[&stages, Path::new("--law"), &self.law]);
-        for preset in &presets_in("crates/studio/presets")? {
+        for preset in &presets_in("crates/burgeon/presets")? {
             // Needles are painted on cards where there are textures: the counts are those of trees drawn without.
             let args = ["grow", preset, "--detail", DETAIL, "--no-textures", "-o", GLB];
             add(&format!("tree {preset}"), &args, &[]);

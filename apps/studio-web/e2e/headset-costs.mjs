@@ -23,7 +23,7 @@ async function growOak(page) {
   await drop(
     page,
     'oak.toml',
-    readFileSync(new URL('../../../crates/studio/presets/oak.toml', import.meta.url), 'utf8'),
+    readFileSync(new URL('../../../crates/burgeon/presets/oak.toml', import.meta.url), 'utf8'),
   );
   await until(page, 'triangles', ['above', 150_000], 'an oak has grown');
 }

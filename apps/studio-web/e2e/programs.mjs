@@ -85,6 +85,8 @@ async function programs({ page, url, shot }) {
 /** Sets a field of light and waits for what comes of it. */
 async function lit(page, act) {
   await act();
+  // The panel is a module of its own: it may still be on its way.
+  await page.locator('#b-lightview').waitFor();
   await page.waitForFunction(() => {
     const { wanted, shown } = document.querySelector('#b-lightview').dataset;
     return shown !== undefined && wanted === shown;

@@ -59,7 +59,7 @@ fn every_edit_is_done_on_a_species_a_drawing_and_an_l_system() {
 fn lsystem() -> String {
     let preset = fs::read_to_string(concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../../crates/studio/presets/oak-lsystem.toml"
+        "/../../crates/burgeon/presets/oak-lsystem.toml"
     ));
     // Younger, for a quick test.
     format!("age = 7\n{}", preset.unwrap())
