@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn every_tree_preset_has_a_row() {
-        let folder = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studio/presets");
+        let folder = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../burgeon/presets");
         // The package alone has no folder of presets.
         let Ok(entries) = std::fs::read_dir(folder) else { return };
         for entry in entries.filter_map(Result::ok) {

@@ -441,7 +441,7 @@ fn marks_survive_other_edits_and_drawn_branches_a_change_of_seed() {
 
 #[test]
 fn edits_are_read_back_from_their_file_form() {
-    let text = include_str!("../../../studio/src/edits-template.json");
+    let text = include_str!("../../../burgeon/src/edits-template.json");
     let file: shape::EditsFile = serde_json::from_str(text).expect("the template is an edits file");
     assert!(file.edits.len() == 11 && file.schema == shape::EDITS_SCHEMA);
     let again = serde_json::to_string(&file).expect("plain data");

@@ -19,7 +19,7 @@ const TOLD: [&str; 12] = [
     "reading/src",
     "scan/src",
     "sketch/src",
-    "studio/src",
+    "burgeon/src",
     "workspace/src",
 ];
 /// Warnings made otherwise than by a call of `warn` with the code in it.
