@@ -3,7 +3,7 @@
 //! A drawing in one colour shows only the colour of the pen. In a painted one, green is no bark and no clay, and a
 //! plant without anything brown, grey or black is a herb.
 
-use ink::{Ink, InkStroke};
+use ink::{Ink, InkStroke, hue};
 
 /// Limits between colours, and limits of a herb.
 #[derive(Clone, Debug)]
@@ -70,24 +70,6 @@ pub(crate) fn is_herb(ink: &Ink) -> bool {
         }
     }
     green >= LIMITS.herb_green * whole && wood < LIMITS.herb_wood * whole
-}
-
-/// Returns the hue in degrees, and the difference between the largest and the smallest channel.
-fn hue(c: [u8; 3]) -> (f64, u8) {
-    let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
-    let [r, g, b] = c.map(f64::from);
-    let span = high - low;
-    if span == 0 {
-        return (0.0, 0);
-    }
-    let sixth = if c[0] == high {
-        (g - b) / f64::from(span)
-    } else if c[1] == high {
-        2.0 + (b - r) / f64::from(span)
-    } else {
-        4.0 + (r - g) / f64::from(span)
-    };
-    ((60.0 * sixth).rem_euclid(360.0), span)
 }
 
 fn is_green(c: [u8; 3]) -> bool {

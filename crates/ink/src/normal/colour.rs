@@ -14,10 +14,35 @@ const WITHIN: f64 = 0.85;
 const PART: core::ops::Range<f64> = 0.1..0.85;
 /// Least share of the points of an opaque shade that follow the outline.
 const ALONG: f64 = 0.3;
+/// That share for a shade in the hue of what it lies on.
+const TINT_ALONG: f64 = 0.12;
 /// Least value of each channel of a gloss.
 const GLOSS: u8 = 235;
+/// A small shade or gloss has the hue of what it lies on, within this, degrees,
+const SAME_HUE: f64 = 8.0;
+/// where both have channels that differ by at least this: grey has no hue.
+const HUED: u8 = 40;
 /// Least value of each channel of the white of the paper.
 const WHITE: u8 = 246;
+
+/// Returns the hue of a colour in degrees, 0 to 360, and the difference between its largest and its smallest channel: 0 for
+/// grey, which has hue 0.
+pub fn hue(c: [u8; 3]) -> (f64, u8) {
+    let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
+    let [r, g, b] = c.map(f64::from);
+    let span = high - low;
+    if span == 0 {
+        return (0.0, 0);
+    }
+    let sixth = if c[0] == high {
+        (g - b) / f64::from(span)
+    } else if c[1] == high {
+        2.0 + (b - r) / f64::from(span)
+    } else {
+        4.0 + (r - g) / f64::from(span)
+    };
+    ((60.0 * sixth).rem_euclid(360.0), span)
+}
 
 /// A closed outline of a figure.
 struct Outline {
@@ -78,14 +103,19 @@ impl Work {
         }
     }
 
-    /// Returns the first sub-path of each figure, if it is closed.
+    /// Returns the first sub-path of each figure, if it is closed; an area is.
     fn outlines(&self) -> Vec<Outline> {
         let outline = |(figure, f): (usize, &Figure)| {
             let line = f.lines.first()?;
             let extent = Extent::from_line(line)?;
             let points = places(line);
             let area = geom::signed_area(&points).abs();
-            (is_closed(line) && area > 0.0).then_some(Outline { figure, points, extent, area })
+            ((is_closed(line) || is_area(f)) && area > 0.0).then_some(Outline {
+                figure,
+                points,
+                extent,
+                area,
+            })
         };
         self.figures.iter().enumerate().filter_map(outline).collect()
     }
@@ -112,16 +142,27 @@ impl Work {
         let edge = 0.04 * of.extent.size().min_element();
         let on_edge =
             |p: DVec2| geom::closest_on_polyline(&of.points, p).is_some_and(|c| c.point.distance(p) <= edge);
+        let small = area.area < PART.start * of.area;
+        let colors = fill.and_then(|f| f.color).zip(below.color_seen());
+        let tint = colors.is_some_and(|(own, below)| is_tint(own, below));
+        let along = if tint { TINT_ALONG } else { ALONG };
         translucent
-            || (area.area >= PART.start * of.area && share(&points, on_edge) >= ALONG)
-            || is_highlight(area, of, (fill.and_then(|f| f.color), below.color_seen()))
+            || (!small && share(&points, on_edge) >= along)
+            || (small && (tint || colors.is_some_and(|(own, below)| is_gloss(own, below))))
     }
 }
 
-/// Whether an area is a gloss: small and white, on another colour.
-fn is_highlight(area: &Outline, of: &Outline, (own, below): (Option<[u8; 3]>, Option<[u8; 3]>)) -> bool {
+/// Whether a colour is white and the other is not.
+fn is_gloss(own: [u8; 3], below: [u8; 3]) -> bool {
     let is_white = |c: [u8; 3]| c.iter().all(|c| *c >= GLOSS);
-    area.area < PART.start * of.area && own.is_some_and(is_white) && below.is_some_and(|c| !is_white(c))
+    is_white(own) && !is_white(below)
+}
+
+/// Whether a colour is a lighter or darker tone of another.
+fn is_tint(own: [u8; 3], below: [u8; 3]) -> bool {
+    let [(a, own), (b, below)] = [own, below].map(hue);
+    let apart = (a - b).abs();
+    own.min(below) >= HUED && apart.min(360.0 - apart) < SAME_HUE
 }
 
 fn count_of(out: &[Vec<bool>]) -> usize {

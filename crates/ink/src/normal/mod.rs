@@ -26,6 +26,8 @@ mod pieces;
 mod ribbon;
 mod traced;
 
+pub use colour::hue;
+
 use base::LiteMap;
 use glam::DVec2;
 

@@ -306,6 +306,15 @@ fn a_small_white_gloss_is_no_organ_and_white_petals_are() {
 }
 
 #[test]
+fn a_lighter_tone_of_a_leaf_is_shade_and_another_colour_is_an_organ() {
+    let leaf = area(vec![ring(DVec2::ZERO, 20.0, 60)], [255, 170, 84]);
+    let tone = area(vec![ring(DVec2::new(-6.0, 8.0), 3.0, 20)], [255, 204, 153]);
+    let spot = area(vec![ring(DVec2::new(-6.0, 8.0), 3.0, 20)], [255, 244, 140]);
+    assert_eq!(counts(&normalise(vec![leaf.clone(), tone], None, &[])), [(Change::Shade, 1)]);
+    assert_eq!(normalise(vec![leaf, spot], None, &[]).strokes.len(), 2);
+}
+
+#[test]
 fn petals_are_no_dashes_of_the_pen_of_the_stem() {
     let bar = |x: f64, y: f64, width: f64, height: f64| {
         let corners = [[x, y], [x + width, y], [x + width, y + height], [x, y + height], [x, y]];
