@@ -107,11 +107,12 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
             }
             continue;
         }
-        let many = of_plants.iter().filter(|p| **p == of).count() >= MANY;
+        let bodies = of_plants.iter().filter(|p| **p == of).count();
+        let many = bodies >= MANY;
         let natural = matches!(organ.paint, Paint::Natural(_));
         let word = of.and_then(|k| reading.plants[k].word);
         let is_pineapple = || word == Some("pineapple") || has_tuft(reading, organ.source);
-        if natural && kind == Kind::Fruit && !many && !form.is_pointed() && is_pineapple() {
+        if natural && kind == Kind::Fruit && bodies == 1 && !form.is_pointed() && is_pineapple() {
             organ.kind = OrganKind::Syncarp;
             continue;
         }
