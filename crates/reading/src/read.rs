@@ -210,8 +210,7 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
     if asked.is_over() {
         return Reading::default();
     }
-    let is_of_pieces = |p: &structure::readers::Proposal| p.kind == Kind::Leaf || p.word == Some("mushroom");
-    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(is_of_pieces) {
+    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(|p| p.is_of_pieces) {
         let first = First::read(asked, ink, classes);
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);

@@ -9,7 +9,7 @@
 use base::LiteMap;
 use geom::{polyline_length, simple_outline, simplify};
 use glam::DVec2;
-use ink::{Ink, StrokeMode};
+use ink::{Ink, InkStroke, StrokeMode};
 
 use super::shape::Shape;
 use crate::near::Near;
@@ -21,11 +21,17 @@ struct FaceLimits {
     along: usize,
     /// Ends nearer than this share of the stroke's length close it.
     closed: f64,
+    /// Ends nearer than this share of the stroke's length close it if it goes round something:
+    wide_gap: f64,
+    /// it then encloses at least this share of its squared length. A circle encloses 0.08.
+    round: f64,
     /// An end nearer than this to another stroke lies on it.
     junction: f64,
-    /// Two free ends nearer than this, and nearest to one another, belong together: the width of the pen of an icon.
+    /// Two free ends nearer than this, and nearest to one another, belong together,
     ends: f64,
-    /// ... and nearer than this share of the shorter of their strokes.
+    /// or nearer than this many widths of the pen: the gap between bold lines is narrower than it is long.
+    ends_pens: f64,
+    /// ... and with a visible gap of less than this share of the shorter of their strokes.
     ends_share: f64,
     /// A free end nearer than this to the side of a stroke belongs to it.
     side: f64,
@@ -60,8 +66,11 @@ struct FaceLimits {
 const LIMITS: FaceLimits = FaceLimits {
     along: 256,
     closed: 0.13,
+    wide_gap: 0.26,
+    round: 0.045,
     junction: 0.0075,
     ends: 0.08,
+    ends_pens: 1.6,
     ends_share: 0.35,
     side: 0.03,
     heading: 0.03,
@@ -429,6 +438,14 @@ impl Picture {
     }
 }
 
+/// Whether the ends of a stroke close it.
+fn is_closed(stroke: &InkStroke) -> bool {
+    let points = &stroke.points;
+    let gap = points[0].distance(points[points.len() - 1]);
+    let goes_round = || geom::signed_area(points).abs() > LIMITS.round * stroke.length * stroke.length;
+    gap < LIMITS.closed * stroke.length || gap < LIMITS.wide_gap * stroke.length && goes_round()
+}
+
 /// A line with the stroke that it belongs to.
 type Owned = (Vec<DVec2>, usize);
 
@@ -442,13 +459,15 @@ fn bridges(ink: &Ink) -> (Vec<Owned>, Vec<Owned>) {
     parts().for_each(|(k, s)| fine.add_line(k, &s.points));
     let mut free: Vec<(DVec2, usize)> = Vec::new();
     for (k, stroke) in parts() {
-        let (start, end) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
-        if start.distance(end) < LIMITS.closed * stroke.length {
+        if is_closed(stroke) {
             continue;
         }
+        let (start, end) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
         let lies_on = |p: DVec2| fine.nearest(p, LIMITS.junction, |owner| owner != k).is_some();
         free.extend([start, end].into_iter().filter(|&p| !lies_on(p)).map(|p| (p, k)));
     }
+    let pen = ink.pen_width();
+    let ends = LIMITS.ends.max(LIMITS.ends_pens * pen);
     let nearest = |i: usize| {
         let (p, k) = free[i];
         let others = (0..free.len()).filter(|&j| j != i).map(|j| {
@@ -456,7 +475,7 @@ fn bridges(ink: &Ink) -> (Vec<Owned>, Vec<Owned>) {
             let short = ink.strokes[k].length.min(ink.strokes[other].length);
             (p.distance(q), j, short)
         });
-        let close = |&(d, _, short): &(f64, usize, f64)| d < LIMITS.ends && d < LIMITS.ends_share * short;
+        let close = |&(d, _, short): &(f64, usize, f64)| d < ends && d - pen < LIMITS.ends_share * short;
         others.filter(close).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, j, _)| j)
     };
     let partner: Vec<Option<usize>> = (0..free.len()).map(nearest).collect();
@@ -484,8 +503,7 @@ fn bridges(ink: &Ink) -> (Vec<Owned>, Vec<Owned>) {
     // A stroke that overlaps its own beginning is closed; one that stops short of its own side stays open.
     for (k, stroke) in parts() {
         let (start, end) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
-        let gap = start.distance(end);
-        if gap > 0.0 && gap < LIMITS.closed * stroke.length {
+        if start != end && is_closed(stroke) {
             lines.push((vec![start, end], k));
         }
     }

@@ -26,6 +26,14 @@ struct BloomLimits {
     other: f64,
     /// This many petals all round are no coincidence, with a disc or without.
     many: usize,
+    /// Circles in a ring are petals if there are at least this many,
+    ring: usize,
+    /// each at least this round (width over length),
+    round: f64,
+    /// all at one distance from the middle, within this share of it,
+    even: f64,
+    /// and no angle between neighbours is wider than this factor of the mean.
+    spaced: f64,
     /// See [`Proposal::likelihood`], for petals round a disc or many petals, and for few without a disc.
     likelihood: [f64; 2],
 }
@@ -39,6 +47,10 @@ const BLOOM: BloomLimits = BloomLimits {
     disc: 3.0,
     other: 0.1,
     many: 8,
+    ring: 5,
+    round: 0.9,
+    even: 0.1,
+    spaced: 1.3,
     likelihood: [ROUND_A_DISC, 200.0],
 };
 
@@ -47,7 +59,47 @@ pub(super) const ROUND_A_DISC: f64 = 4000.0;
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let discs = (0..scene.faces.len()).map(Some).chain([None]);
-    discs.filter_map(|disc| around(scene, disc)).max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))
+    let best = |a: &Proposal, b: &Proposal| a.likelihood.total_cmp(&b.likelihood);
+    discs.filter_map(|disc| around(scene, disc)).max_by(best).or_else(|| ring(scene))
+}
+
+/// Proposes a flower whose petals are circles in a ring that do not reach its middle.
+fn ring(scene: &Scene) -> Option<Proposal> {
+    let faces = &scene.faces;
+    let count = faces.len();
+    let middle = faces.iter().map(|f| f.shape.middle).sum::<DVec2>() / count.max(1) as f64;
+    let away = || faces.iter().map(|f| f.shape.middle.distance(middle));
+    let areas = || faces.iter().map(|f| f.shape.area);
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold((f64::INFINITY, 0.0_f64), |(l, h), x| (l.min(x), h.max(x)))
+    };
+    let ((near, far), (small, large)) = (range(&mut away()), range(&mut areas()));
+    let is_ring = count >= BLOOM.ring
+        && faces.iter().all(|f| f.shape.slenderness > BLOOM.round && f.shape.convexity > BLOOM.round)
+        && far - near < BLOOM.even * far
+        && small > BLOOM.alike * large
+        && widest_gap(faces.iter().map(|f| f.shape.middle - middle))
+            < BLOOM.spaced * base::ops::TAU / count as f64
+        && scene.lines.is_empty();
+    let parts = is_ring.then(|| {
+        // A claw leads to the middle.
+        let outline = |f: &Face| geom::convex_hull(&[&f.outline[..], &[middle]].concat());
+        let petal = |f: &Face| Part {
+            points: outline(f),
+            class: StrokeClass::Blade,
+            root: Some(middle),
+            strokes: f.strokes.clone(),
+        };
+        faces.iter().map(petal).collect()
+    })?;
+    Some(Proposal {
+        kind: Kind::Flower,
+        parts,
+        heads: vec![(0..count).collect()],
+        likelihood: BLOOM.likelihood[0],
+        word: None,
+        is_of_pieces: true,
+    })
 }
 
 /// Proposes a flower whose petals stand round a face, or round the place where they meet.
@@ -95,6 +147,7 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
         heads,
         likelihood: BLOOM.likelihood[usize::from(disc.is_none() && petals.len() < BLOOM.many)],
         word: None,
+        is_of_pieces: false,
     })
 }
 

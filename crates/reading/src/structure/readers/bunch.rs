@@ -65,7 +65,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         scene.faces.iter().filter(is_berry).map(|f| Part::of_face(f, StrokeClass::Fruit, None)).collect();
     parts.extend(scene.axes.iter().map(Part::of_axis));
     let (heads, likelihood, word) = (Vec::new(), BUNCH.likelihood, Some("grapes"));
-    Some(Proposal { kind: Kind::Fruit, parts, heads, likelihood, word })
+    Some(Proposal { kind: Kind::Fruit, parts, heads, likelihood, word, is_of_pieces: false })
 }
 
 /// Whether a line leads from the bunch upwards, and none down from it.

@@ -78,7 +78,14 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     parts.extend(scene.axes.iter().filter(|a| is_ground(&a.points)).map(ground));
     let likelihood = CACTUS.likelihood;
     let word = Some("cactus");
-    (arms > 0).then_some(Proposal { kind: Kind::Cactus, parts, heads: Vec::new(), likelihood, word })
+    (arms > 0).then_some(Proposal {
+        kind: Kind::Cactus,
+        parts,
+        heads: Vec::new(),
+        likelihood,
+        word,
+        is_of_pieces: false,
+    })
 }
 
 fn ground(axis: &Axis) -> Part {

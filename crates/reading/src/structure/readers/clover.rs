@@ -52,5 +52,12 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         .collect();
     parts.extend(stalks.map(|l| Part::of_run(l, StrokeClass::Axis)));
     parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
-    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood: CLOVER.likelihood, word: None })
+    Some(Proposal {
+        kind: Kind::Leaf,
+        parts,
+        heads: Vec::new(),
+        likelihood: CLOVER.likelihood,
+        word: None,
+        is_of_pieces: true,
+    })
 }

@@ -112,6 +112,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         heads: Vec::new(),
         likelihood: CONIFER.likelihood,
         word: None,
+        is_of_pieces: false,
     })
 }
 

@@ -73,7 +73,7 @@ const CUP: CupLimits = CupLimits {
     most: 0.6,
     lopsided: 0.35,
     low_corner: 0.3,
-    whole_convex: 0.78,
+    whole_convex: 0.7,
     most_notches: 3,
     size: 0.2,
     other: 0.12,
@@ -146,7 +146,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     parts.extend(scene.leaves_among(beside(), CUP.other)?);
     parts.extend(scene.axes.iter().map(Part::of_axis));
     let likelihood = CUP.likelihood[usize::from(in_front < CUP.in_front)];
-    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None })
+    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None, is_of_pieces: false })
 }
 
 type Petal = (Vec<DVec2>, Vec<usize>);

@@ -27,6 +27,12 @@ struct HeadLimits {
     lobes_alike: f64,
     /// The disc lies within this share of the head's reach from its middle.
     disc: f64,
+    /// A head that is at least this round, with a disc as round, has its rays all round though no notch parts them,
+    circle: f64,
+    /// this many,
+    rays: u32,
+    /// if the disc covers between these shares of its area.
+    ray_disc: core::ops::Range<f64>,
     /// Least height and width, ink units.
     size: f64,
     /// Its stem goes on below it by more than this share of its height.
@@ -43,6 +49,8 @@ struct HeadLimits {
     other: f64,
     /// See [`Proposal::likelihood`], for a head with lines or faces in it, and for an empty one.
     likelihood: [f64; 2],
+    /// That for alike lobes all round a disc.
+    lobes_likelihood: f64,
 }
 
 const HEAD: HeadLimits = HeadLimits {
@@ -53,6 +61,9 @@ const HEAD: HeadLimits = HeadLimits {
     notch: 0.045,
     lobes_alike: 0.5,
     disc: 0.25,
+    circle: 0.9,
+    rays: 12,
+    ray_disc: 0.04..0.5,
     size: 0.2,
     stem: 0.3,
     potted_stem: 0.1,
@@ -61,6 +72,7 @@ const HEAD: HeadLimits = HeadLimits {
     leaf: 0.6,
     other: 0.1,
     likelihood: [3000.0, 300.0],
+    lobes_likelihood: 30_000.0,
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
@@ -71,7 +83,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     members.extend(inner);
     let (low, high) = geom::bounds(&head.outline)?;
     let size = high - low;
-    let lobes = lobes(scene, &members, &head);
+    let lobes = lobes(scene, &members, &head).or_else(|| rays(scene, &members, &head));
     let least = if lobes.is_some() { HEAD.lobed_convex } else { HEAD.convex };
     if head.shape.convexity < least || head.shape.slenderness < HEAD.round || size.min_element() < HEAD.size {
         return None;
@@ -80,9 +92,13 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let goes_below = |axis: &&Axis| axis.points.iter().any(|p| p.y < low.y - stem * size.y);
     // A trunk has two sides.
     let below: Vec<&Axis> = scene.axes.iter().filter(goes_below).collect();
-    let [stem] = below[..] else { return None };
     let on_head = |p: DVec2| Some(nearest_on_ring(&head.outline, p)).filter(|(_, d)| *d < scene.touch);
-    let (base, _) = stem.ends().into_iter().find_map(on_head)?;
+    let base = match below[..] {
+        [stem] => stem.ends().into_iter().find_map(on_head)?.0,
+        // A flower that lies by itself shows its petals and its disc.
+        [] if lobes.is_some() && scene.lines.is_empty() => DVec2::new(low.midpoint(high).x, low.y),
+        _ => return None,
+    };
     if base.y > low.y + HEAD.base * size.y {
         return None;
     }
@@ -92,19 +108,62 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if leaves.is_empty() && lobes.is_none() || largest > HEAD.leaf * head.shape.area {
         return None;
     }
-    let (mut parts, is_marked) = match lobes {
-        Some(lobes) => (lobes, true),
+    let (mut parts, likelihood) = match lobes {
+        Some(lobes) => (lobes, HEAD.lobes_likelihood),
         None => {
             let petals = petals(scene, &members, &head, base);
             let is_marked = petals.len() > 1 || scene.marks.iter().any(|(face, _)| members.contains(face));
-            (petals, is_marked)
+            (petals, HEAD.likelihood[usize::from(!is_marked)])
         }
     };
-    let heads = vec![(0..parts.len()).collect()];
+    let is_petal = |k: &usize| parts[*k].class == StrokeClass::Blade;
+    let heads = vec![(0..parts.len()).filter(is_petal).collect()];
     parts.extend(leaves);
     parts.extend(scene.axes.iter().map(Part::of_axis));
-    let likelihood = HEAD.likelihood[usize::from(!is_marked)];
-    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None })
+    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None, is_of_pieces: false })
+}
+
+/// Cuts a round head with a round disc in its middle into rays.
+fn rays(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
+    let is_circle = |f: &Face| f.shape.slenderness > HEAD.circle && f.shape.convexity > HEAD.circle;
+    let inner = scene.faces.iter().enumerate().filter(|(k, _)| members.contains(k)).map(|(_, f)| f);
+    let discs: Vec<&Face> = inner.filter(|f| f.shape.area < HEAD.ray_disc.end * head.shape.area).collect();
+    let [disc] = discs[..] else { return None };
+    let middle = head.shape.middle;
+    let reach = (head.shape.area / base::ops::PI).sqrt();
+    let is_rayed = is_circle(head)
+        && is_circle(disc)
+        && disc.shape.area > HEAD.ray_disc.start * head.shape.area
+        && disc.shape.middle.distance(middle) < HEAD.disc * reach
+        && members.len() == 2;
+    let step = base::ops::TAU / f64::from(HEAD.rays);
+    let ray = |k: u32| {
+        let direction = |angle: f64| {
+            let (sin, cos) = base::ops::sin_cos(angle);
+            DVec2::new(cos, sin)
+        };
+        let way = |turn: f64| direction((f64::from(k) + turn) * step);
+        let tip = |turn: f64, far: f64| middle + way(turn) * (reach * far);
+        Part {
+            points: vec![
+                middle,
+                tip(0.08, 0.6),
+                tip(0.18, 0.9),
+                tip(0.5, 1.0),
+                tip(0.82, 0.9),
+                tip(0.92, 0.6),
+                middle,
+            ],
+            class: StrokeClass::Blade,
+            root: Some(middle),
+            strokes: head.strokes.clone(),
+        }
+    };
+    is_rayed.then(|| {
+        let mut parts: Vec<Part> = (0..HEAD.rays).map(ray).collect();
+        parts.push(Part::of_face(disc, StrokeClass::Disc, None));
+        parts
+    })
 }
 
 /// Cuts a head into lobes round its disc, if its outline has alike ones all round: petals.

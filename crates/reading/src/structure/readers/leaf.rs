@@ -74,7 +74,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
     parts.extend(scene.marks_of(row).map(|mark| Part::of_run(mark, StrokeClass::Vein)));
     parts.extend(petioles.iter().map(|(line, _)| Part::of_run(line, StrokeClass::Axis)));
-    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood, word: None })
+    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood, word: None, is_of_pieces: true })
 }
 
 fn reach(run: &Run) -> f64 {

@@ -94,7 +94,14 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
     parts.extend(scene.marks_of(row).map(|m| Part::of_run(m, StrokeClass::Vein)));
     parts.extend(scene.lines.iter().map(|l| Part::of_run(l, StrokeClass::Axis)));
-    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood: LOBED.likelihood, word: None })
+    Some(Proposal {
+        kind: Kind::Leaf,
+        parts,
+        heads: Vec::new(),
+        likelihood: LOBED.likelihood,
+        word: None,
+        is_of_pieces: true,
+    })
 }
 
 /// Returns where a blade is widest, as a share of the way from its base to its far end.

@@ -94,7 +94,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     parts.extend(scene.marks.iter().map(|(_, mark)| Part::of_run(mark, StrokeClass::Vein)));
     parts.extend(scene.lines.iter().map(|line| Part::of_run(line, StrokeClass::Axis)));
     let likelihood = LOOSE.likelihood[0];
-    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood, word: None })
+    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood, word: None, is_of_pieces: true })
 }
 
 /// Proposes that lenses are leaves; each is attached at its lower end.
@@ -105,7 +105,14 @@ fn fallen_lenses(scene: &Scene, rows: &[usize]) -> Proposal {
         Part::of_face(face, StrokeClass::Blade, root)
     };
     let parts = rows.iter().map(leaf).collect();
-    Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood: LOOSE.likelihood[1], word: None }
+    Proposal {
+        kind: Kind::Leaf,
+        parts,
+        heads: Vec::new(),
+        likelihood: LOOSE.likelihood[1],
+        word: None,
+        is_of_pieces: true,
+    }
 }
 
 /// Where the midrib of a face leaves it, if it has one: the longest line in it, if that is straight, leads along it and

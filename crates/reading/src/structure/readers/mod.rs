@@ -6,8 +6,10 @@
 mod bloom;
 mod bunch;
 mod cactus;
+mod chevrons;
 mod clover;
 mod conifer;
+mod crown;
 mod cup;
 mod fruit;
 mod head;
@@ -57,6 +59,8 @@ pub(crate) struct Proposal {
     pub(crate) likelihood: f64,
     /// The name of a plant of the kind with this arrangement, if only one has it: a word of [`crate::glance::WORDS`].
     pub(crate) word: Option<&'static str>,
+    /// Whether its parts belong together though they do not touch one another.
+    pub(crate) is_of_pieces: bool,
 }
 
 /// Limits of touching and of small faces, for all readers. Lengths are in ink units (the drawing's diagonal is 1).
@@ -376,19 +380,34 @@ pub(crate) fn is_leaf_from(face: &Face, root: DVec2) -> bool {
         && shape.tip_from(root).is_some_and(|tip| tip.distance(root) > TIP * far)
 }
 
-/// A straight side deviates from its chord by at most this share of it.
+/// A straight side deviates from a line by at most this share of its chord.
 const SIDE_STRAIGHT: f64 = 0.025;
 /// A straight side is at least this share of the length of its face.
 const SIDE_LONG: f64 = 0.8;
+/// The part of a side by which it is judged, as shares of its chord: its corners may be rounded.
+const SIDE_MIDDLE: core::ops::Range<f64> = 0.15..0.85;
 
 /// Whether an outline with two corners is straight from one to the other, as that of a slice is and no leaf's.
 pub(crate) fn has_straight_side(face: &Face) -> bool {
     let [a, b] = face.shape.corners[..] else { return false };
-    let chord = b - a;
-    let across = chord.normalize_or_zero().perp();
-    let of_side = |sign: f64| face.outline.iter().map(|p| sign * (*p - a).dot(across)).fold(0.0, f64::max);
-    let length = chord.length();
-    length > SIDE_LONG * face.shape.length() && of_side(1.0).min(of_side(-1.0)) < SIDE_STRAIGHT * length
+    let outline = &face.outline;
+    let nearest = |p: DVec2| {
+        (0..outline.len()).min_by(|&i, &j| outline[i].distance(p).total_cmp(&outline[j].distance(p)))
+    };
+    let (Some(from), Some(to)) = (nearest(a), nearest(b)) else { return false };
+    let (from, to) = (from.min(to), from.max(to));
+    let length = a.distance(b);
+    let along = (b - a).normalize_or_zero();
+    let is_middle = |p: &&DVec2| SIDE_MIDDLE.contains(&((**p - a).dot(along) / length));
+    // From one corner to the other the side stays on one line, at whatever distance from the rounded corners.
+    let is_straight = |side: &mut dyn Iterator<Item = &DVec2>| {
+        let off = side.filter(is_middle).map(|p| (*p - a).dot(along.perp()));
+        let (low, high) = off.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
+        high - low < SIDE_STRAIGHT * length
+    };
+    let one = is_straight(&mut outline[from..=to].iter());
+    let other = is_straight(&mut outline[to..].iter().chain(&outline[..=from]));
+    length > SIDE_LONG * face.shape.length() && (one || other)
 }
 
 /// The tip of a leaf lies farther from its root than this share of the farthest point.
@@ -397,7 +416,8 @@ const TIP: f64 = 0.88;
 /// Returns the proposals of the readers for a drawing, the surest first. One reader's plant may be part of another's:
 /// the one that requires more excludes the other.
 pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
-    let Some(scene) = Scene::new(ink) else { return Vec::new() };
+    let chevrons = chevrons::propose(ink);
+    let Some(scene) = Scene::new(ink) else { return chevrons.into_iter().collect() };
     let clover = clover::propose(&scene);
     let lobed = lobed::propose(&scene);
     let bunch = bunch::propose(&scene);
@@ -407,7 +427,10 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     let is_from_front = bloom.as_ref().is_some_and(|b| b.likelihood >= bloom::ROUND_A_DISC);
     // Petals seen from the side have no midribs.
     let loose = loose::propose(&scene);
-    let may_be_cup = clover.is_none() && !is_from_front && loose.is_none();
+    // A smooth cap with a flat underside is no petal.
+    let mushroom = mushroom::propose(&scene);
+    let is_capped = mushroom.as_ref().is_some_and(|m| m.likelihood >= mushroom::FLAT_CAP);
+    let may_be_cup = clover.is_none() && !is_from_front && loose.is_none() && !is_capped;
     let cup = if may_be_cup { cup::propose(&scene) } else { None };
     // Lobes that spread from the foot are fingers, not tiers.
     let conifer = if lobed.is_none() { conifer::propose(&scene) } else { None };
@@ -419,14 +442,15 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
         sprig::propose,
         palm::propose,
         taproot::propose,
-        mushroom::propose,
+        crown::propose,
     ]
     .map(|read| read(&scene));
-    let mut found: Vec<Proposal> = [clover, lobed, loose, bloom, bunch, cup, head, conifer]
-        .into_iter()
-        .chain(others)
-        .flatten()
-        .collect();
+    let mut found: Vec<Proposal> =
+        [clover, lobed, loose, bloom, bunch, cup, head, conifer, chevrons, mushroom]
+            .into_iter()
+            .chain(others)
+            .flatten()
+            .collect();
     if let Some(ground) = &scene.ground {
         let part = Part { class: StrokeClass::Ground, ..Part::of_axis(ground) };
         found.iter_mut().for_each(|p| p.parts.push(part.clone()));

@@ -61,8 +61,11 @@ const MUSHROOM: MushroomLimits = MushroomLimits {
     flat: 0.75,
     flat_at: 0.1,
     level: 0.13,
-    likelihood: [12.0, 400.0],
+    likelihood: [12.0, FLAT_CAP],
 };
+
+/// See [`Proposal::likelihood`]: a smooth cap with a flat underside.
+pub(super) const FLAT_CAP: f64 = 400.0;
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     // The ground on which the stem stands is no part of it.
@@ -86,7 +89,14 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let mut parts = [&cap.face, &stem].map(|face| Part::of_face(face, StrokeClass::Fruit, None)).to_vec();
     parts.extend(scene.lines.iter().filter(is_ground).map(|line| Part::of_run(line, StrokeClass::Ground)));
     let likelihood = MUSHROOM.likelihood[usize::from(cap.is_flat)];
-    Some(Proposal { kind: Kind::Vegetable, parts, heads: Vec::new(), likelihood, word: Some("mushroom") })
+    Some(Proposal {
+        kind: Kind::Vegetable,
+        parts,
+        heads: Vec::new(),
+        likelihood,
+        word: Some("mushroom"),
+        is_of_pieces: true,
+    })
 }
 
 /// A cap, and whether its underside is flat.

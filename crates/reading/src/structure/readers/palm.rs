@@ -102,7 +102,14 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     parts.extend(trunk.parts);
     parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
-    Some(Proposal { kind: Kind::Palm, parts, heads: Vec::new(), likelihood: PALM.likelihood, word: None })
+    Some(Proposal {
+        kind: Kind::Palm,
+        parts,
+        heads: Vec::new(),
+        likelihood: PALM.likelihood,
+        word: None,
+        is_of_pieces: false,
+    })
 }
 
 /// Finds a trunk: a narrow face that stands on the ground.

@@ -63,7 +63,14 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         leaves.iter().map(|(face, root)| Part::of_face(face, StrokeClass::Blade, Some(*root))).collect();
     parts.extend(scene.axes.iter().map(Part::of_axis));
     parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
-    Some(Proposal { kind: Kind::Stem, parts, heads: Vec::new(), likelihood: SPRIG.likelihood, word: None })
+    Some(Proposal {
+        kind: Kind::Stem,
+        parts,
+        heads: Vec::new(),
+        likelihood: SPRIG.likelihood,
+        word: None,
+        is_of_pieces: false,
+    })
 }
 
 /// Whether some leaves begin in one place, as petals do (He and Cheng 2021, section 4.1: more than two).

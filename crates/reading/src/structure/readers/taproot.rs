@@ -78,6 +78,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         heads: Vec::new(),
         likelihood: TAPROOT.likelihood,
         word: Some("carrot"),
+        is_of_pieces: false,
     })
 }
 

@@ -1,6 +1,6 @@
 use base::ops;
 use glam::DVec2;
-use ink::{Drawing, Ink};
+use ink::{Drawing, Ink, StrokeClass};
 
 use super::{Proposal, propose};
 use crate::Kind;
@@ -241,7 +241,7 @@ fn leaves_over_one_another_with_midribs_are_loose_leaves_and_petals_from_one_bas
     let lines = [front, rib, one, two, its_rib];
     let found = seen(&lines);
     let leaves = found.iter().find(|p| p.kind == Kind::Leaf).expect("leaves");
-    let blades = leaves.parts.iter().filter(|p| p.class == ink::StrokeClass::Blade);
+    let blades = leaves.parts.iter().filter(|p| p.class == StrokeClass::Blade);
     assert_eq!(blades.count(), 2);
     let petals = [p(-4.0, 5.0), p(0.0, 7.0), p(4.0, 5.0)];
     let ribbed: Vec<Vec<DVec2>> =
@@ -255,8 +255,8 @@ fn the_narrow_face_below_a_pointed_crown_is_its_trunk() {
     let trunk = vec![p(-1.0, 2.0), p(-1.4, 0.0), p(1.4, 0.0), p(1.0, 2.0)];
     let found = seen(&[crown, trunk]);
     let conifer = found.first().expect("a conifer");
-    let classes: Vec<ink::StrokeClass> = conifer.parts.iter().map(|p| p.class).collect();
-    assert_eq!(classes, [ink::StrokeClass::Crown, ink::StrokeClass::TrunkOutline]);
+    let classes: Vec<StrokeClass> = conifer.parts.iter().map(|p| p.class).collect();
+    assert_eq!(classes, [StrokeClass::Crown, StrokeClass::TrunkOutline]);
 }
 
 #[test]
@@ -281,7 +281,7 @@ fn balls_packed_on_a_stalk_are_a_bunch_and_petals_round_a_disc_are_not() {
     lines.push(stalk);
     let found = seen(&lines);
     assert_eq!(found.first().map(|p| (p.kind, p.word)), Some((Kind::Fruit, Some("grapes"))));
-    assert_eq!(found[0].parts.iter().filter(|p| p.class == ink::StrokeClass::Fruit).count(), 10);
+    assert_eq!(found[0].parts.iter().filter(|p| p.class == StrokeClass::Fruit).count(), 10);
     let petals = (0..6).map(|k| ops::sin_cos(ops::TAU * f64::from(k) / 6.0));
     let mut flower: Vec<Vec<DVec2>> = petals.map(|(s, c)| ring(p(c, s) * 2.0, 1.0)).collect();
     flower.push(ring(DVec2::ZERO, 1.0));
@@ -308,7 +308,7 @@ fn lobes_round_a_ring_on_a_stem_are_petals_also_in_a_pot() {
     let found = seen(&[head, disc, stem, pot]);
     let potted = found.first().expect("a potted flower");
     assert_eq!((potted.kind, potted.heads[0].len()), (Kind::HousePlant, 5));
-    assert!(potted.parts.iter().any(|p| p.class == ink::StrokeClass::Pot));
+    assert!(potted.parts.iter().any(|p| p.class == StrokeClass::Pot));
 }
 
 #[test]
@@ -322,8 +322,8 @@ fn a_cap_over_two_lines_on_the_ground_is_a_mushroom() {
     let [left, right] = sides;
     let found = seen(&[cap, left, right, vec![p(-2.0, 0.0), p(2.0, 0.0)]]);
     let mushroom = found.iter().find(|p| p.word == Some("mushroom")).expect("a mushroom");
-    let count = |class: ink::StrokeClass| mushroom.parts.iter().filter(|p| p.class == class).count();
-    let (bodies, ground) = (count(ink::StrokeClass::Fruit), count(ink::StrokeClass::Ground));
+    let count = |class: StrokeClass| mushroom.parts.iter().filter(|p| p.class == class).count();
+    let (bodies, ground) = (count(StrokeClass::Fruit), count(StrokeClass::Ground));
     assert_eq!((bodies, bodies + ground), (2, mushroom.parts.len()));
 }
 
@@ -373,4 +373,72 @@ fn a_round_body_with_ribs_is_one_fruit() {
     let found = seen(&pumpkin);
     let fruit = found.iter().find(|p| p.kind == Kind::Fruit).expect("a fruit");
     assert_eq!(fruit.parts.len(), 2);
+}
+
+#[test]
+fn a_leaf_above_an_apple_is_a_leaf_on_a_stalk() {
+    let apple = [ring(DVec2::ZERO, 3.0), leaf(p(0.3, 3.9), p(1.5, 5.2), 0.4)];
+    let found = seen(&apple);
+    let fruit = found.iter().find(|p| p.kind == Kind::Fruit).expect("a fruit");
+    let classes: Vec<StrokeClass> = fruit.parts.iter().map(|p| p.class).collect();
+    assert_eq!(classes, [StrokeClass::Fruit, StrokeClass::Blade, StrokeClass::Axis]);
+    // A leaf as large as the body is none of its own.
+    let seedling = [ring(DVec2::ZERO, 3.0), leaf(p(0.3, 3.9), p(6.5, 9.2), 0.5)];
+    assert!(seen(&seedling).iter().all(|p| p.kind != Kind::Fruit));
+}
+
+#[test]
+fn half_a_disc_with_seeds_is_a_slice() {
+    let mut slice = arc(p(-3.0, 0.0), p(-3.0, -3.6), p(0.0, -3.0));
+    slice.extend(arc(p(0.0, -3.0), p(3.0, -3.6), p(3.0, 0.0)));
+    slice.push(p(-3.0, 0.0));
+    let seeds = [-1.0, 0.0, 1.0].map(|x| vec![p(x, -1.0), p(x, -1.4)]);
+    let [a, b, c] = seeds;
+    assert_eq!(first(&[slice.clone(), a, b, c]), Some(Kind::Fruit));
+    assert_eq!(first(&[slice]), None, "an empty one may be a bowl");
+}
+
+#[test]
+fn lines_that_lead_down_from_a_trunk_are_a_conifer() {
+    let chevron = |y: f64, wide: f64| vec![p(-wide, y - wide), p(0.0, y), p(wide, y - wide)];
+    let trunk = vec![p(0.0, 9.0), p(0.0, 0.0)];
+    let fir = [trunk.clone(), chevron(9.0, 1.5), chevron(7.0, 2.0), chevron(5.0, 2.6)];
+    assert_eq!(first(&fir), Some(Kind::Conifer));
+    let ear = |y: f64, wide: f64| vec![p(-wide, y + wide), p(0.0, y), p(wide, y + wide)];
+    assert_eq!(first(&[trunk, ear(7.0, 1.5), ear(5.0, 1.5), ear(3.0, 1.5)]), None);
+}
+
+#[test]
+fn circles_in_a_ring_are_petals_and_others_are_not() {
+    let circle = |k: u8, away: f64| {
+        let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 5.0);
+        ring(p(c, s) * away, 1.0)
+    };
+    let flower: Vec<Vec<DVec2>> = (0..5).map(|k| circle(k, 3.0)).collect();
+    let found = seen(&flower);
+    assert_eq!((found[0].kind, found[0].heads.len()), (Kind::Flower, 1));
+    let uneven: Vec<Vec<DVec2>> = (0..5).map(|k| circle(k, 2.0 + f64::from(k))).collect();
+    assert!(seen(&uneven).iter().all(|p| p.kind != Kind::Flower));
+}
+
+#[test]
+fn a_crown_with_a_flat_foot_on_one_line_is_a_tree() {
+    let mut cloud = arc(p(-4.0, 4.0), p(-5.5, 6.5), p(-2.5, 6.5));
+    cloud.extend(arc(p(-2.5, 6.5), p(0.0, 9.5), p(2.5, 6.5)));
+    cloud.extend(arc(p(2.5, 6.5), p(5.5, 6.5), p(4.0, 4.0)));
+    cloud.push(p(-4.0, 4.0));
+    let kinds = |lines: &[Vec<DVec2>]| seen(lines).iter().map(|p| p.kind).collect::<Vec<_>>();
+    assert!(kinds(&[cloud.clone(), vec![p(0.0, 4.0), p(0.0, 0.0)]]).contains(&Kind::Tree));
+    let stem = vec![p(-1.0, 4.0), p(-1.0, 0.0), p(1.0, 0.0), p(1.0, 4.0)];
+    assert!(!kinds(&[cloud, stem]).contains(&Kind::Tree), "a mushroom stands on two lines");
+}
+
+#[test]
+fn a_disc_in_a_circle_on_a_stem_has_rays() {
+    let stem = vec![p(0.0, -3.0), p(0.0, -9.0)];
+    let found =
+        seen(&[ring(DVec2::ZERO, 3.0), ring(DVec2::ZERO, 1.2), stem, leaf(p(0.0, -7.0), p(3.0, -5.0), 0.3)]);
+    assert_eq!(found[0].kind, Kind::Flower);
+    let discs = found[0].parts.iter().filter(|p| p.class == StrokeClass::Disc).count();
+    assert_eq!((discs, found[0].heads[0].len()), (1, 12));
 }
