@@ -3,7 +3,12 @@
 use glam::DVec2;
 
 use super::{Change, Extent, Figure, Fill, LIMITS, Work, is_closed, places, some_of};
+use crate::InkSample;
 
+/// An area in the colour of another one is part of it if it stands out by at most this share of the drawing's diagonal.
+const STANDS_OUT: f64 = 0.04;
+/// and if the other one is this many times larger: dots side by side are alike.
+const MUCH_LARGER: f64 = 2.0;
 /// Number of points of an area that are compared with an outline.
 const COMPARED: usize = 32;
 /// An area under an outline has at least this share of its box.
@@ -53,6 +58,32 @@ struct Outline {
 }
 
 impl Work {
+    /// Removes areas that cannot be told from a larger area of their colour: its parts, or a rim round it. Cost: bounded.
+    pub(super) fn merge_areas_of_one_colour(&mut self) {
+        let outlines = self.outlines();
+        let areas: Vec<&Outline> = outlines.iter().filter(|o| is_area(&self.figures[o.figure])).collect();
+        let lines: usize = areas.iter().map(|a| self.figures[a.figure].lines.len()).sum();
+        if areas.len() * lines > LIMITS.pairs {
+            return;
+        }
+        let slack = STANDS_OUT * self.diagonal();
+        let look = |k: usize| self.figures[k].fill.map(|f| (f.color, f.opacity));
+        let mut out = self.none_out();
+        for part in &areas {
+            let figure = &self.figures[part.figure];
+            let is_part_of = |whole: &&&Outline| {
+                whole.figure != part.figure
+                    && whole.area > MUCH_LARGER * part.area
+                    && look(whole.figure) == look(part.figure)
+                    && figure.lines.iter().all(|line| lies_in(line, whole, slack))
+            };
+            if figure.fill.is_some_and(|f| f.color.is_some()) && areas.iter().any(|w| is_part_of(&w)) {
+                out[part.figure].fill(true);
+            }
+        }
+        self.leave_out(&out, Change::DrawnTwice);
+    }
+
     /// Gives lines the colour of the areas under them and removes these; removes areas within others that shade them.
     pub(super) fn colour_lines(&mut self) {
         for figure in &mut self.figures {
@@ -163,6 +194,16 @@ fn is_tint(own: [u8; 3], below: [u8; 3]) -> bool {
     let [(a, own), (b, below)] = [own, below].map(hue);
     let apart = (a - b).abs();
     own.min(below) >= HUED && apart.min(360.0 - apart) < SAME_HUE
+}
+
+/// Whether a line lies in an outline, or nowhere farther from it than `slack`.
+fn lies_in(line: &[InkSample], whole: &Outline, slack: f64) -> bool {
+    let is_held = Extent::from_line(line).is_some_and(|e| whole.extent.holds(e, slack));
+    let is_in = |p: DVec2| {
+        geom::contains(&whole.points, p)
+            || geom::closest_on_polyline(&whole.points, p).is_some_and(|c| c.point.distance(p) <= slack)
+    };
+    is_held && line.iter().all(|s| is_in(s.at))
 }
 
 fn count_of(out: &[Vec<bool>]) -> usize {

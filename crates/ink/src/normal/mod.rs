@@ -10,7 +10,7 @@
 //! | line art painted as one area with holes | `cells` |
 //! | outlines of a pen's stroke, traced ink | `ribbon`, `traced` |
 //! | a line drawn twice, segments, outlines in pieces | `pieces` |
-//! | colour under a line, shade over colour | `colour` |
+//! | areas of one colour, colour under a line, shade over colour | `colour` |
 //! | hatching, stipple | `hatching` |
 //!
 //! A figure holds what a file says of one element and is never changed in place by its surroundings: each step judges
@@ -229,6 +229,7 @@ pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, words: &[(
     work.leave_labels_out(words);
     work.leave_paper_out();
     work.leave_backings_out();
+    work.merge_areas_of_one_colour();
     work.open_line_art();
     work.take_pen_outlines();
     work.take_traced_ink();

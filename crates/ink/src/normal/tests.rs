@@ -315,6 +315,21 @@ fn a_lighter_tone_of_a_leaf_is_shade_and_another_colour_is_an_organ() {
 }
 
 #[test]
+fn a_rim_in_the_colour_of_an_area_is_part_of_it_and_a_petal_that_stands_out_is_not() {
+    let leaf = area(vec![ring(DVec2::ZERO, 20.0, 60)], [30, 150, 80]);
+    let rim = area(
+        vec![ring(DVec2::new(10.0, 0.0), 9.0, 30), ring(DVec2::new(-12.0, 0.0), 9.0, 30)],
+        [30, 150, 80],
+    );
+    let petal = area(vec![ring(DVec2::new(20.0, 0.0), 9.0, 30)], [30, 150, 80]);
+    let normal = normalise(vec![leaf.clone(), rim.clone()], None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (1, vec![(Change::DrawnTwice, 2)]));
+    assert_eq!(normalise(vec![leaf.clone(), petal], None, &[]).strokes.len(), 2);
+    let spots = Figure { fill: rim.fill.map(|f| Fill { color: Some([200, 30, 40]), ..f }), ..rim };
+    assert_eq!(normalise(vec![leaf, spots], None, &[]).strokes.len(), 3);
+}
+
+#[test]
 fn petals_are_no_dashes_of_the_pen_of_the_stem() {
     let bar = |x: f64, y: f64, width: f64, height: f64| {
         let corners = [[x, y], [x + width, y], [x + width, y + height], [x, y + height], [x, y]];
