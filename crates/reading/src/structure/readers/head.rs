@@ -27,6 +27,8 @@ struct HeadLimits {
     lobes_alike: f64,
     /// The disc lies within this share of the head's reach from its middle.
     disc: f64,
+    /// It covers at most this share of the head.
+    disc_area: f64,
     /// A head that is at least this round, with a disc as round, has its rays all round though no notch parts them,
     circle: f64,
     /// this many,
@@ -61,6 +63,7 @@ const HEAD: HeadLimits = HeadLimits {
     notch: 0.045,
     lobes_alike: 0.5,
     disc: 0.25,
+    disc_area: 0.4,
     circle: 0.9,
     rays: 12,
     ray_disc: 0.04..0.5,
@@ -83,7 +86,14 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     members.extend(inner);
     let (low, high) = geom::bounds(&head.outline)?;
     let size = high - low;
-    let lobes = lobes(scene, &members, &head).or_else(|| rays(scene, &members, &head));
+    let lobes = lobes(scene, &members, &head);
+    // Nothing but its disc lies in or next to a flower without a stem.
+    let may_be_stemless = lobes.is_some()
+        && scene.lines.is_empty()
+        && members.len() == scene.faces.len()
+        && members.iter().filter(|k| scene.faces[**k].shape.area > HEAD.disc_area * head.shape.area).count()
+            == 1;
+    let lobes = lobes.or_else(|| rays(scene, &members, &head));
     let least = if lobes.is_some() { HEAD.lobed_convex } else { HEAD.convex };
     if head.shape.convexity < least || head.shape.slenderness < HEAD.round || size.min_element() < HEAD.size {
         return None;
@@ -96,7 +106,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let base = match below[..] {
         [stem] => stem.ends().into_iter().find_map(on_head)?.0,
         // A flower that lies by itself shows its petals and its disc.
-        [] if lobes.is_some() && scene.lines.is_empty() => DVec2::new(low.midpoint(high).x, low.y),
+        [] if may_be_stemless => DVec2::new(low.midpoint(high).x, low.y),
         _ => return None,
     };
     if base.y > low.y + HEAD.base * size.y {
@@ -116,8 +126,9 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
             (petals, HEAD.likelihood[usize::from(!is_marked)])
         }
     };
-    let is_petal = |k: &usize| parts[*k].class == StrokeClass::Blade;
-    let heads = vec![(0..parts.len()).filter(is_petal).collect()];
+    // A disc gathers its petals.
+    let has_disc = parts.iter().any(|part| part.class == StrokeClass::Disc);
+    let heads = if has_disc { Vec::new() } else { vec![(0..parts.len()).collect()] };
     parts.extend(leaves);
     parts.extend(scene.axes.iter().map(Part::of_axis));
     Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None, is_of_pieces: false })
@@ -180,8 +191,11 @@ fn lobes(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
         return None;
     }
     let is_central = |p: DVec2| p.distance(middle) < HEAD.disc * reach;
-    let inner =
-        scene.faces.iter().enumerate().filter(|(k, f)| members.contains(k) && f.shape.area < head.shape.area);
+    let inner = scene
+        .faces
+        .iter()
+        .enumerate()
+        .filter(|(k, f)| members.contains(k) && f.shape.area < HEAD.disc_area * head.shape.area);
     let discs = inner.map(|(_, f)| f.shape.middle).filter(|p| is_central(*p));
     let marks = scene.marks.iter().filter(|(face, _)| members.contains(face)).map(|(_, run)| run);
     let marks = marks.filter(|run| run.points.iter().all(|p| is_central(*p))).map(|run| run.points[0]);
