@@ -5,8 +5,10 @@ use glam::DVec2;
 use super::{Change, Extent, Figure, Fill, LIMITS, Work, is_closed, places, some_of};
 use crate::InkSample;
 
-/// An area in the colour of another one is part of it if it stands out by at most this share of the drawing's diagonal.
+/// An area in the colour of another one is part of it if it stands out by at most this share of the drawing's diagonal,
 const STANDS_OUT: f64 = 0.04;
+/// if more than this share of its points lie in the other one: a rim has half of them there,
+const PART_INSIDE: f64 = 0.35;
 /// and if the other one is this many times larger: dots side by side are alike.
 const MUCH_LARGER: f64 = 2.0;
 /// Number of points of an area that are compared with an outline.
@@ -58,7 +60,8 @@ struct Outline {
 }
 
 impl Work {
-    /// Removes areas that cannot be told from a larger area of their colour: its parts, or a rim round it. Cost: bounded.
+    /// Removes areas that cannot be told from a larger area of their colour, its parts or a rim round it; and tones of
+    /// an area on it. Cost: bounded.
     pub(super) fn merge_areas_of_one_colour(&mut self) {
         let outlines = self.outlines();
         let areas: Vec<&Outline> = outlines.iter().filter(|o| is_area(&self.figures[o.figure])).collect();
@@ -68,20 +71,35 @@ impl Work {
         }
         let slack = STANDS_OUT * self.diagonal();
         let look = |k: usize| self.figures[k].fill.map(|f| (f.color, f.opacity));
-        let mut out = self.none_out();
+        let color = |k: usize| self.figures[k].fill.and_then(|f| f.color);
+        let (mut parts, mut tones) = (self.none_out(), self.none_out());
         for part in &areas {
             let figure = &self.figures[part.figure];
+            let larger = || areas.iter().filter(|w| w.figure != part.figure && w.area > part.area);
             let is_part_of = |whole: &&&Outline| {
-                whole.figure != part.figure
-                    && whole.area > MUCH_LARGER * part.area
+                whole.area > MUCH_LARGER * part.area
                     && look(whole.figure) == look(part.figure)
                     && figure.lines.iter().all(|line| lies_in(line, whole, slack))
+                    && share(&places(&figure.lines.concat()), |p| geom::contains(&whole.points, p))
+                        > PART_INSIDE
             };
-            if figure.fill.is_some_and(|f| f.color.is_some()) && areas.iter().any(|w| is_part_of(&w)) {
-                out[part.figure].fill(true);
+            let is_tone_of = |below: &&&Outline| {
+                let colors = color(part.figure).zip(color(below.figure));
+                below.figure < part.figure
+                    && colors.is_some_and(|(own, below)| is_tint(own, below))
+                    && self.is_shade(part, below)
+            };
+            if color(part.figure).is_some() && larger().any(|w| is_part_of(&w)) {
+                parts[part.figure].fill(true);
+            } else if larger().any(|w| is_tone_of(&w)) {
+                tones[part.figure].fill(true);
             }
         }
-        self.leave_out(&out, Change::DrawnTwice);
+        let (merged, shades) = (count_of(&parts), count_of(&tones));
+        if self.take_out(&either(parts, tones)) > 0 {
+            self.note(Change::DrawnTwice, merged);
+            self.note(Change::Shade, shades);
+        }
     }
 
     /// Gives lines the colour of the areas under them and removes these; removes areas within others that shade them.
@@ -125,10 +143,7 @@ impl Work {
         }
         let colours = count_of(&under);
         let shades = count_of(&shade);
-        for (under, shade) in under.iter_mut().zip(shade) {
-            under.iter_mut().zip(shade).for_each(|(u, s)| *u |= s);
-        }
-        if self.take_out(&under) > 0 {
+        if self.take_out(&either(under, shade)) > 0 {
             self.note(Change::Colour, colours);
             self.note(Change::Shade, shades);
         }
@@ -204,6 +219,14 @@ fn lies_in(line: &[InkSample], whole: &Outline, slack: f64) -> bool {
             || geom::closest_on_polyline(&whole.points, p).is_some_and(|c| c.point.distance(p) <= slack)
     };
     is_held && line.iter().all(|s| is_in(s.at))
+}
+
+/// Returns what is left out by one or the other.
+fn either(mut out: Vec<Vec<bool>>, more: Vec<Vec<bool>>) -> Vec<Vec<bool>> {
+    for (out, more) in out.iter_mut().zip(more) {
+        out.iter_mut().zip(more).for_each(|(out, more)| *out |= more);
+    }
+    out
 }
 
 fn count_of(out: &[Vec<bool>]) -> usize {
