@@ -31,6 +31,7 @@ use ink::{Ink, StrokeClass, StrokeMode};
 use super::faces::{Face, Faces, Picture, Place, Run};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
+use crate::palette::{is_green_stroke, is_painted};
 use crate::thresholds::STRAIGHT;
 
 /// The source of a class that follows from the arrangement of faces and lines.
@@ -451,6 +452,7 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
             .chain(others)
             .flatten()
             .collect();
+    found.iter_mut().for_each(|proposal| green_petals_are_leaves(proposal, ink));
     if let Some(ground) = &scene.ground {
         let part = Part { class: StrokeClass::Ground, ..Part::of_axis(ground) };
         found.iter_mut().for_each(|p| p.parts.push(part.clone()));
@@ -463,6 +465,16 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     }
     base::sort_by(&mut found, |a, b| b.likelihood.total_cmp(&a.likelihood));
     found
+}
+
+/// Makes a flower whose petals were all painted green, among other colours, a stem with leaves.
+fn green_petals_are_leaves(proposal: &mut Proposal, ink: &Ink) {
+    let is_green = |part: &Part| part.strokes.first().is_some_and(|&k| is_green_stroke(&ink.strokes[k]));
+    let mut blades = proposal.parts.iter().filter(|p| p.class == StrokeClass::Blade);
+    if proposal.kind == Kind::Flower && is_painted(ink) && blades.all(is_green) {
+        proposal.kind = Kind::Stem;
+        proposal.heads.clear();
+    }
 }
 
 /// Turns an outline so that `up` points up, about a place that becomes the origin.

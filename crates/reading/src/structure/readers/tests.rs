@@ -96,8 +96,8 @@ fn a_pointed_crown_on_a_trunk_is_a_conifer_and_a_round_one_is_not() {
     assert_eq!(first(&[trunk, ring(p(0.0, 5.0), 3.0)]), None);
 }
 
-#[test]
-fn petals_that_rise_from_a_stem_are_one_flower_seen_from_the_side() {
+/// Three petals on a stem, seen from the side; the stem is the first line.
+fn tulip() -> Vec<Vec<DVec2>> {
     let stem = vec![p(0.0, 0.0), p(0.0, 5.0)];
     let petals = [
         leaf(p(0.0, 5.0), p(0.0, 10.0), 0.45),
@@ -108,7 +108,12 @@ fn petals_that_rise_from_a_stem_are_one_flower_seen_from_the_side() {
     ];
     let mut lines = vec![stem];
     lines.extend(petals);
-    let found = seen(&lines);
+    lines
+}
+
+#[test]
+fn petals_that_rise_from_a_stem_are_one_flower_seen_from_the_side() {
+    let found = seen(&tulip());
     assert_eq!(
         found.first().map(|p| (p.kind, p.heads.iter().map(Vec::len).collect())),
         Some((Kind::Flower, vec![3]))
@@ -441,4 +446,18 @@ fn a_disc_in_a_circle_on_a_stem_has_rays() {
     assert_eq!(found[0].kind, Kind::Flower);
     let discs = found[0].parts.iter().filter(|p| p.class == StrokeClass::Disc).count();
     assert_eq!((discs, found[0].parts.len()), (1, 15), "twelve rays, a disc, a leaf and a stem");
+}
+
+#[test]
+fn blades_that_were_painted_green_are_no_petals() {
+    let mut drawing = Drawing::from_polylines("test", &tulip());
+    let kinds = |drawing: &Drawing| {
+        let ink = ink::clean(drawing, &mut base::Report::default());
+        propose(&ink).iter().map(|p| p.kind).collect::<Vec<_>>()
+    };
+    for (color, kind) in [([220, 60, 120], Kind::Flower), ([30, 160, 60], Kind::Stem)] {
+        drawing.strokes.iter_mut().for_each(|s| s.color = Some(color));
+        drawing.strokes[0].color = Some(if kind == Kind::Flower { [30, 160, 60] } else { [120, 70, 30] });
+        assert_eq!(kinds(&drawing).first(), Some(&kind));
+    }
 }
