@@ -13,6 +13,8 @@ const BODY: f64 = 0.4;
 const THORNY_BODY: f64 = 0.12;
 /// A body is long if its length is more than this factor of its width, as in bananas, pods and cucumbers.
 const LONG: f64 = 2.2;
+/// A ball is at most this many times as long as wide, or as wide as long.
+const BALL: f64 = 1.15;
 /// The length of a root is more than this factor of its width.
 const ROOT_LONG: f64 = 1.3;
 /// The thinner end of a root is thinner than this share of its thicker end.
@@ -124,9 +126,10 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
         let skin = match word {
             // Red, as a slice of a melon is.
             Some("apple" | "strawberry") => None,
-            // Berries have neither stalks of their own nor leaves.
+            // Berries are balls, and have neither stalks of their own nor leaves.
             Some("blueberry")
-                if !many && (has_stalk(reading, organ.source) || has_leaf(reading, organ.source)) =>
+                if !form.is_ball()
+                    || !many && (has_stalk(reading, organ.source) || has_leaf(reading, organ.source)) =>
             {
                 by_form()
             }
@@ -189,6 +192,10 @@ impl Form {
     /// Whether it is thinner away from its stalk, as a strawberry is.
     fn is_pointed(&self) -> bool {
         self.ends[1] < STRAWBERRY * self.ends[0]
+    }
+
+    fn is_ball(&self) -> bool {
+        (1.0 / BALL..BALL).contains(&(self.tall / self.wide))
     }
 
     fn is_long(&self) -> bool {

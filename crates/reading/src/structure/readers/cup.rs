@@ -36,6 +36,8 @@ struct CupLimits {
     alike: f64,
     /// A line that goes farther than this from the head leads out of it.
     leads_out: f64,
+    /// Tips fan out to both sides: on average within this share of the width from the base.
+    fanned: f64,
     /// The visible part of a petal comes nearer to its base than this share of its length.
     seen: f64,
     /// Petals cover more than this share of the head; the rest are leaves that float or bracts.
@@ -69,6 +71,7 @@ const CUP: CupLimits = CupLimits {
     behind: 8.0,
     alike: 7.0,
     leads_out: 0.06,
+    fanned: 0.22,
     seen: 0.4,
     most: 0.6,
     lopsided: 0.35,
@@ -129,7 +132,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     let (petals, in_front) = match faces.len() {
         1 => (lobes(&head, base, low.y, size.y)?, CUP.in_front),
-        _ => fan(&faces, base, low.y, size.y)?,
+        _ => fan(&faces, base, low.y, size)?,
     };
     if in_front < CUP.in_front && stem.is_none() {
         return None;
@@ -153,7 +156,8 @@ type Petal = (Vec<DVec2>, Vec<usize>);
 
 /// Returns faces that rise from the base, each with a tip, extended to the base if they are hidden; and the number of
 /// those visible down to it.
-fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal>, usize)> {
+fn fan(faces: &[&Face], base: DVec2, low: f64, size: DVec2) -> Option<(Vec<Petal>, usize)> {
+    let height = size.y;
     let tip = |f: &Face| f.shape.tip_from(base);
     let rises = |f: &&&Face| tip(f).is_some_and(|t| t.y > low + CUP.notches * height);
     let petals: Vec<&&Face> = faces.iter().filter(rises).collect();
@@ -176,7 +180,7 @@ fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal
     }
     let mean = petals.iter().filter_map(|f| tip(f)).sum::<DVec2>() / petals.len() as f64;
     // They rise: petals all round a middle belong to a flower seen from the front.
-    if mean.y < low + CUP.tips * height {
+    if mean.y < low + CUP.tips * height || (mean.x - base.x).abs() > CUP.fanned * size.x {
         return None;
     }
     let led = |f: &&&Face| {

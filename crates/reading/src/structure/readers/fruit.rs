@@ -175,8 +175,9 @@ fn slice(scene: &Scene) -> Option<Proposal> {
         && has_straight_side(&whole);
     let has_flesh = faces.len() > 1 || !scene.marks.is_empty();
     let is_alone = scene.lines.is_empty() && scene.axes.iter().all(|a| is_within(a, &whole, scene.touch));
-    (is_slice && has_flesh && is_alone)
-        .then(|| proposal(vec![Part::of_face(&whole, StrokeClass::Fruit, None)], FRUIT.likelihood[2]))
+    let body = vec![Part::of_face(&whole, StrokeClass::Fruit, None)];
+    let slice = Proposal { word: Some("watermelon"), ..proposal(body, FRUIT.likelihood[2]) };
+    (is_slice && has_flesh && is_alone).then_some(slice)
 }
 
 /// Whether a line lies in a face, or within a distance of it.
