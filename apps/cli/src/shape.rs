@@ -317,14 +317,14 @@ fn no_project(args: &ShapeArgs, what: &Path) -> Outcome {
 
 fn list(branches: &[BranchRow]) -> Outcome {
     let mut lines = vec![format!(
-        "{:<18}{:>6}{:>24}{:>9}{:>10}{:>9}{:>7}",
+        "{:<18}{:>6}{:>24}{:>9}{:>18}{:>9}{:>7}",
         "path", "at", "base, m", "length", "direction", "radius", "bears"
     )];
     for row in branches {
         let path = row.path.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let b = row.base_m;
         lines.push(format!(
-            "{:<18}{:>6.2}{:>24}{:>7.2} m{:>10}{:>6.1} cm{:>7}",
+            "{:<18}{:>6.2}{:>24}{:>7.2} m{:>18}{:>6.1} cm{:>7}",
             format!("[{path}]"),
             row.at,
             format!("{:.2}, {:.2}, {:.2}", b.x, b.y, b.z),

@@ -319,9 +319,14 @@ fn figures_of(
     }
 }
 
+/// Names of the checks of light, in the order in which they are made.
+pub(crate) const LIGHT_CHECKS: [&str; 5] =
+    ["light-dark", "light-no-leaves", "light-rough", "light-leaf-meshes", "light-dense"];
+
 fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], report: &mut Report) {
     let share = |x: f64| format!("{:.1} %", 100.0 * x);
     let mut test = |name, value: f64, bound: Bound, shown: [String; 2], message: String, advice| {
+        debug_assert!(LIGHT_CHECKS.contains(&name), "{name} is listed");
         let severity = if name == "light-dark" { Severity::Error } else { Severity::Warning };
         report.check(Check { name, value, bound, shown, severity, message, advice });
     };

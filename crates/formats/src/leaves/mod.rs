@@ -24,9 +24,9 @@ pub use sheet::{ReadSheet, read_xlsx};
 /// Largest file of a leaf that is read: 16 MiB, far more than a person can measure.
 pub const MAX_LEAF_BYTES: u64 = 16 << 20;
 
-/// Error of reading a file of a leaf.
+/// Error of reading a file of measurements: of a leaf, or of what grows.
 #[derive(Debug, thiserror::Error)]
-#[error("leaf file{place}: {fault}")]
+#[error("measurements{place}: {fault}")]
 pub struct LeafFileError {
     /// Where.
     pub place: Place,

@@ -39,8 +39,9 @@ impl Structure {
     pub(crate) fn new(sheet: &Sheet, pot: &[usize], classes: &[Classified]) -> Self {
         let said = |k: usize| classes.get(k).copied().unwrap_or_default();
         let by_user = |k: usize| said(k).source == Source::User;
-        let found = |k: usize| if by_user(k) { None } else { class_of(sheet, k, said) };
-        let mut classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(found).collect();
+        let mut together = LiteMap::new();
+        let mut found = |k: usize| if by_user(k) { None } else { class_of((sheet, &mut together), k, said) };
+        let mut classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(&mut found).collect();
         // A head makes its blades petals of one flower and its middle a disc; the user's classes may contradict that.
         let agrees = |head: &Vec<usize>| {
             head.iter().enumerate().all(|(place, &k)| {
@@ -165,10 +166,14 @@ fn alike_among(sheet: &Sheet, k: usize, among: &[usize]) -> usize {
 }
 
 /// Returns the class of one stroke, if its structure gives one.
-fn class_of(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Option<StrokeClass> {
+fn class_of(
+    (sheet, together): (&Sheet, &mut ClassesOfAlike),
+    k: usize,
+    said: impl Fn(usize) -> Classified,
+) -> Option<StrokeClass> {
     let facts = &sheet.facts[k];
     match (facts.form, facts.holder) {
-        (Form::Ring | Form::Bay, _) => class_of_outline(sheet, k, said),
+        (Form::Ring | Form::Bay, _) => class_of_outline((sheet, together), k, said),
         (Form::Line, Some(holder)) => Some(mark_in(&sheet.facts[holder])),
         (Form::Line, None) => class_of_line(said(k)),
     }
@@ -192,7 +197,15 @@ fn class_of_line(said: Classified) -> Option<StrokeClass> {
     (!is_line).then_some(StrokeClass::Axis)
 }
 
-fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Option<StrokeClass> {
+/// The class of each set of similar outlines, by their rows: hundreds of equal outlines are one set, which is looked at
+/// once.
+type ClassesOfAlike = LiteMap<Vec<usize>, StrokeClass>;
+
+fn class_of_outline(
+    (sheet, together): (&Sheet, &mut ClassesOfAlike),
+    k: usize,
+    said: impl Fn(usize) -> Classified,
+) -> Option<StrokeClass> {
     let facts = &sheet.facts[k];
     let alike = sheet.alike(k);
     if let Some(holder) = facts.holder {
@@ -205,11 +218,14 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
     if 2 * crowns > alike.len() && !facts.has_midrib {
         return None;
     }
-    if alike.len() >= LIMITS.repeated && are_discs(sheet, &alike) {
-        return Some(StrokeClass::Disc);
-    }
     if alike.len() >= LIMITS.repeated {
-        return Some(class_of_repeated(sheet, &alike));
+        if let Some(&class) = together.get(&alike) {
+            return Some(class);
+        }
+        let is_disc = are_discs(sheet, &alike);
+        let class = if is_disc { StrokeClass::Disc } else { class_of_repeated(sheet, &alike) };
+        together.insert(alike, class);
+        return Some(class);
     }
     let is_body = matches!(
         said(k).class,
@@ -232,25 +248,31 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
 /// them: discs of flowers along a stem. Berries touch one another, or hang.
 fn are_discs(sheet: &Sheet, alike: &[usize]) -> bool {
     let outline = |k: usize| sheet.facts[k].outline.as_ref();
+    let unlike = unlike(sheet, alike);
     let is_disc = |&&k: &&usize| {
         let Some(own) = outline(k).filter(|o| o.roundness > LIMITS.round) else { return false };
         let larger =
             |j: usize| outline(j).is_some_and(|o| o.area > LIMITS.petal * own.area && own.touches(o));
-        let around = (0..sheet.facts.len()).filter(|&j| !alike.contains(&j) && larger(j)).count();
+        let around = unlike.iter().filter(|&&j| larger(j)).count();
         around >= LIMITS.petals_about
             && !alike.iter().any(|&j| j != k && outline(j).is_some_and(|o| own.touches(o)))
     };
     2 * alike.iter().filter(is_disc).count() > alike.len()
 }
 
+/// Returns the rows of all strokes but some; `alike` rises.
+fn unlike(sheet: &Sheet, alike: &[usize]) -> Vec<usize> {
+    (0..sheet.facts.len()).filter(|j| alike.binary_search(j).is_err()).collect()
+}
+
 /// Whether some outlines are seen whole, and most touch none that is unlike them: petals lie before and behind others.
 fn stand_alone(sheet: &Sheet, alike: &[usize]) -> bool {
+    let unlike = unlike(sheet, alike);
     let is_whole = |k: &&usize| sheet.facts[**k].form == Form::Ring;
     let is_free = |k: &&usize| {
         let Some(own) = &sheet.facts[**k].outline else { return false };
-        let others =
-            sheet.facts.iter().enumerate().filter(|(j, f)| !alike.contains(j) && f.holder != Some(**k));
-        !others.filter_map(|(_, f)| f.outline.as_ref()).any(|o| own.touches(o))
+        let others = unlike.iter().map(|&j| &sheet.facts[j]).filter(|f| f.holder != Some(**k));
+        !others.filter_map(|f| f.outline.as_ref()).any(|o| own.touches(o))
     };
     let (whole, free) = (alike.iter().filter(is_whole).count(), alike.iter().filter(is_free).count());
     3 * whole >= alike.len() && 2 * free > alike.len()
