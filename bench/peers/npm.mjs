@@ -35,6 +35,9 @@ const CODE = {
   'burgeon/growth, oak at detail 0.1, textures of 256': `const { grow } = await import('burgeon/growth');
     const plant = await grow('oak', { seed: 2, detail: 0.1, texture_size: 256 }); const tree = plant.object3D();
     const triangles = plant.report.counts.triangles;`,
+  'burgeon/growth, oak, first': `const { grow } = await import('burgeon/growth');
+    const plant = await new Promise((first) => void grow('oak', { seed: 2, first })); const tree = plant.object3D();
+    const triangles = plant.report.counts.triangles;`,
   'ez-tree, Oak Medium': `const { Tree } = await import('@dgreenheck/ez-tree');
     const tree = new Tree(); tree.loadPreset('Oak Medium'); tree.generate();
     let triangles = 0; tree.traverse((o) => { triangles += (o.geometry?.index?.count ?? 0) / 3; });`,

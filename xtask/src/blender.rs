@@ -1,6 +1,6 @@
 //! The extension for Blender: the file that people install, and its tests with Blender as a module of Python.
 
-use crate::python::{BUILD, build, environment, install, lint, pip};
+use crate::python::{BUILD, Reach, build, environment, install, lint, optimised, pip};
 use crate::toolchain::shown;
 use std::path::{Path, PathBuf};
 use xtask::shell::{Outcome, finish, output, prepare, repository, say, target_dir};
@@ -9,10 +9,9 @@ use xtask::shell::{Outcome, finish, output, prepare, repository, say, target_dir
 const TEST: &[&str] = &["bpy>=4.2", "numpy", "pytest"];
 
 /// Builds the extension for users, for this system: the wheel optimised, into `target/blender`.
-pub(crate) fn pack() -> Outcome {
+pub(crate) fn pack(reach: Reach) -> Outcome {
     let python = environment()?.ok_or("Python 3.9 or newer is missing: install it with its module venv")?;
-    install(&python, BUILD)?;
-    let file = packed(&python, &build(&python, &["--release"])?)?;
+    let file = packed(&python, &optimised(&python, reach)?)?;
     say(&format!(
         "{}: Blender 4.2 and newer installs it (Edit, Preferences, Get Extensions, Install from Disk)",
         shown(&file)

@@ -57,7 +57,8 @@ cargo xtask COMMAND
   npm            builds the npm package as a tarball, target/npm, and says how large its cores are (docs/npm.md)
   test-npm       the npm part of `test` alone
   bench-npm      measures the npm package beside another maker of trees, in Node and in a browser
-  wheel          builds the Python package for this system, target/wheels
+  wheel          builds the Python package for this system, target/wheels; with --manylinux for every Linux with glibc 2.28
+                 or a newer one (blender takes it, too)
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
   setup          installs the wasm32 target and the WASM tools only
 ";
@@ -97,9 +98,9 @@ fn main() -> ExitCode {
         Some("npm") => web::setup().and_then(|tools| npm::pack(&tools)),
         Some("test-npm") => web::setup().and_then(|tools| npm::test(&tools)),
         Some("bench-npm") => web::setup().and_then(|tools| npm::bench(&tools)),
-        Some("wheel") => python::wheel(),
+        Some("wheel") => python::Reach::parse(rest).and_then(python::wheel),
         Some("test-python") => python::test(false),
-        Some("blender") => blender::pack(),
+        Some("blender") => python::Reach::parse(rest).and_then(blender::pack),
         Some("test-blender") => blender::test(),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
@@ -222,9 +223,9 @@ fn test(share: Share) -> Outcome {
     if share == Share::All {
         minutes.measure("fuzz targets", fuzz_targets)?;
         minutes.measure("the npm package", || npm::pack(&tools))?;
-        minutes.measure("the wheel", python::wheel)?;
+        minutes.measure("the wheel", || python::wheel(python::Reach::Own))?;
         minutes.measure("the archive", archive::run)?;
-        minutes.measure("the extension for Blender", blender::pack)?;
+        minutes.measure("the extension for Blender", || blender::pack(python::Reach::Own))?;
     }
     minutes.tell();
     Ok(())

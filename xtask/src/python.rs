@@ -10,6 +10,10 @@ use xtask::shell::{
 
 /// Packages that build the wheel, and lint the Python code.
 pub(crate) const BUILD: &[&str] = &["maturin>=1.8,<2", "ruff>=0.14,<1"];
+/// Linker that knows the C libraries of old systems, by which a wheel for all of them is built.
+const LINKER: &[&str] = &["ziglang>=0.13"];
+/// Options of maturin for a wheel of every Linux with glibc 2.28 (2018) or a newer one.
+const MANYLINUX: &[&str] = &["--zig", "--compatibility", "manylinux_2_28"];
 /// Imports of the tests.
 const TEST: &[&str] = &[
     "numpy",
@@ -32,13 +36,46 @@ const RAY: &[&str] = &["ray>=2"];
 /// Imports of a separate step: programs that read what is written for simulators; not available for every system.
 const SIMULATORS: &[&str] = &["mujoco>=3", "usd-core>=25", "numpy"];
 
+/// Whom a wheel is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reach {
+    /// Systems like this one.
+    Own,
+    /// Every Linux with glibc 2.28 or a newer one.
+    Manylinux,
+}
+
+impl Reach {
+    /// Reads the options of a chore that builds a wheel.
+    pub(crate) fn parse(args: &[String]) -> Outcome<Self> {
+        match args {
+            [] => Ok(Self::Own),
+            [option] if option == "--manylinux" && cfg!(target_os = "linux") => Ok(Self::Manylinux),
+            _ => Err("it takes --manylinux, on Linux, or nothing".into()),
+        }
+    }
+}
+
 /// Builds the wheel for users: optimised, into `target/wheels`.
-pub(crate) fn wheel() -> Outcome {
+pub(crate) fn wheel(reach: Reach) -> Outcome {
     let python = environment()?.ok_or("Python 3.9 or newer is missing: install it with its module venv")?;
-    install(&python, BUILD)?;
-    let wheel = build(&python, &["--release"])?;
+    let wheel = optimised(&python, reach)?;
     say(&format!("{}: `pip install` takes it; it serves every Python from 3.9 on", shown(&wheel)));
     Ok(())
+}
+
+/// Returns the optimised wheel.
+pub(crate) fn optimised(python: &Path, reach: Reach) -> Outcome<PathBuf> {
+    match reach {
+        Reach::Own => {
+            install(python, BUILD)?;
+            build(python, &["--release"])
+        }
+        Reach::Manylinux => {
+            install(python, &[BUILD, LINKER].concat())?;
+            build(python, &[&["--release"], MANYLINUX].concat())
+        }
+    }
 }
 
 /// Builds the wheel with the same settings as the tests of the workspace, and runs its tests. `tested`: whether these
@@ -152,6 +189,14 @@ pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
     // Maturin looks for the environment from which it is called.
     if let Some(folder) = python.parent().and_then(Path::parent) {
         c.env("VIRTUAL_ENV", folder);
+    }
+    // It asks the first Python of the path for the linker.
+    if options.contains(&MANYLINUX[0])
+        && let Some(programs) = python.parent()
+    {
+        let others = std::env::var_os("PATH").unwrap_or_default();
+        let paths = std::iter::once(programs.to_path_buf()).chain(std::env::split_paths(&others));
+        c.env("PATH", std::env::join_paths(paths).map_err(|e| format!("PATH: {e}"))?);
     }
     finish(c)?;
     let files = std::fs::read_dir(&out).map_err(|e| format!("{}: {e}", shown(&out)))?;

@@ -12,7 +12,7 @@ use burgeon::growth::{
 use burgeon::skin::SkinSpec;
 use burgeon::{
     HeightError, ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError,
-    TreeOptions, TreeSpec, age_of_height, make_tree, method_word, read_tree_spec, tree_of_dbh,
+    TreeGoal, TreeOptions, TreeSpec, aim_at, make_tree, method_word, read_tree_spec,
 };
 
 use crate::args::{GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
@@ -130,15 +130,12 @@ fn set_age(args: &GrowArgs, spec: &mut TreeSpec, seed: Seed, machine: &Machine) 
         HeightError::Tree(e) => failure(args, spec, e),
         e => Failure::bad_file(Path::new(&named(args)), format_args!("{option}: {e}")),
     };
-    let run = machine.run();
-    if let Some(dbh) = args.growth.dbh {
-        let found = tree_of_dbh(spec, seed, dbh, &run).map_err(|e| fail(spec, "--dbh", e))?;
-        spec.age = found.age;
-        return Ok(Some(found.height_m));
-    }
-    let Some(height) = args.growth.height else { return Ok(None) };
-    spec.age = age_of_height(spec, seed, height, &run).map_err(|e| fail(spec, "--height", e))?;
-    Ok(Some(height))
+    let (option, goal) = match (args.growth.height, args.growth.dbh) {
+        (_, Some(dbh)) => ("--dbh", TreeGoal::Dbh(dbh)),
+        (Some(height), None) => ("--height", TreeGoal::Height(height)),
+        (None, None) => return Ok(None),
+    };
+    aim_at(spec, seed, goal, &machine.run()).map(Some).map_err(|e| fail(spec, option, e))
 }
 
 /// Fails on unused options.

@@ -1,18 +1,14 @@
 //! A plant's file with its coarser copies next to it, within a budget if there is one.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use burgeon::formats::{
-    Assembly, ExportSpec, Level, ModelFormat, PngCache, Room, WriteError, assembly_files, model_files,
-    write_glb_levels, write_glb_rigged,
+    Assembly, Level, ModelFormat, PngCache, Room, assembly_files, write_glb_levels, write_glb_rigged,
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::{SolidError, SolidSpec};
-use burgeon::{
-    Allowance, AssemblyError, ItemReport, Levels, Report, Warning, name_after, print_plant, write_engine_glb,
-};
+use burgeon::{AssemblyError, FileForm, ItemReport, Levels, Report, Warning, name_after, print_plant};
 
 use crate::args::{AxesArgs, ExportArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
@@ -48,101 +44,38 @@ impl<'a> Form<'a> {
         Self { goal: Goal::new("-o", path), format, export, axes }
     }
 
-    fn is_in_one_file(&self) -> bool {
-        (self.export.in_one_file() || self.export.nodes) && self.format.holds(Room::Levels)
-    }
-
-    /// Writes levels into one file, as named nodes if the engine wants them.
-    fn write_levels(
-        &self,
-        plant: &Plant,
-        levels: &[Level<'_>],
-        cache: &mut PngCache,
-        out: impl Write,
-    ) -> Result<(), WriteError> {
-        match self.export.engine.filter(|_| self.export.nodes) {
-            Some(engine) => {
-                let models: Vec<&Model> = levels.iter().map(|level| level.model).collect();
-                write_engine_glb(engine, plant, &models, cache, out)
-            }
-            None => write_glb_levels(levels, self.export.packing(), cache, out),
-        }
-    }
-
     fn gltf(&self) -> ModelFormat {
         self.format.model().unwrap_or(ModelFormat::Glb)
     }
 
-    /// Returns the bytes of the file of a model, whose levels are in `levels`, and of the files next to it.
-    fn weigh(
-        &self,
-        (plant, model): (&Plant, &Model),
-        levels: &[Level<'_>],
-        cache: &mut PngCache,
-    ) -> Outcome<u64> {
-        let failed = |e: WriteError| crate::output::write_failed(self.goal.path, e);
-        let Some(format) = self.format.model() else { return Ok(0) };
-        let mut out = Counter::default();
-        if format.holds(Room::Packing) {
-            if let Some(rig) =
-                self.export.sway.then(|| burgeon::skin::sway(model, burgeon::skin::gust(model))).flatten()
-            {
-                write_glb_rigged(model, &rig, cache, &mut out).map_err(failed)?;
-            } else {
-                let of_file = if self.is_in_one_file() { levels } else { &levels[..levels.len().min(1)] };
-                self.write_levels(plant, of_file, cache, &mut out).map_err(failed)?;
-            }
-            return Ok(out.bytes);
+    fn file(&self) -> FileForm {
+        let export = self.export;
+        FileForm {
+            format: self.gltf(),
+            axes: files::axes(self.axes.up, self.axes.unit),
+            packing: export.packing(),
+            sways: export.sway,
+            is_one_file: (export.in_one_file() || export.nodes) && self.format.holds(Room::Levels),
+            nodes: export.engine.filter(|_| export.nodes),
         }
-        let spec: ExportSpec = files::axes(self.axes.up, self.axes.unit);
-        let made =
-            model_files(model, format, "model", &spec, cache, &mut Report::default()).map_err(failed)?;
-        Ok((made.own.len() + made.beside.iter().map(|f| f.bytes.len()).sum::<usize>()) as u64)
     }
-}
-
-/// Counts bytes.
-#[derive(Default)]
-struct Counter {
-    bytes: u64,
-}
-
-impl Write for Counter {
-    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        self.bytes += buffer.len() as u64;
-        Ok(buffer.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Returns the model and its levels as files hold them: each without the leaves that are copies, and these copies.
-fn split<'a>(model: &'a Model, levels: &'a Levels) -> Vec<Level<'a>> {
-    let all = std::iter::once(model).chain(&levels.lods).enumerate();
-    let of = |(k, model): (usize, &'a Model)| {
-        let split = levels.copies.get(k).map(|(rest, copies)| Level { model: rest, copies: &copies[..] });
-        split.unwrap_or(Level::plain(model))
-    };
-    all.map(of).collect()
 }
 
 /// Reduces a plant to the allowed size.
 fn fit(form: &Form<'_>, whole: &mut Whole<'_>, item: &mut ItemReport, cache: &mut PngCache) -> Outcome {
     let export = form.export;
-    if !export.has_budget() || form.format.model().is_none() {
+    let allowance = export.allowance();
+    if !allowance.is_any() || form.format.model().is_none() {
         return Ok(());
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 4e9")]
-    let bytes = export.megabytes.map(|m| (m * 1e6) as u64);
-    let allowance = Allowance { triangles: export.triangles, bytes };
     let model = std::mem::take(&mut whole.model);
     let levels = std::mem::take(&mut whole.levels);
     let asked = (export.lods, export.impostor.is_some());
     let plant = whole.plant;
-    let weigh = |model: &Model, levels: &Levels| form.weigh((plant, model), &split(model, levels), cache);
-    let fitted = levels.within(model, allowance, asked, weigh)?;
+    let file = form.file();
+    let weigh = |model: &Model, levels: &Levels| file.weigh(plant, &levels.split(model), cache);
+    let fitted = levels.within(model, allowance, asked, weigh);
+    let fitted = fitted.map_err(|e| crate::output::write_failed(form.goal.path, e))?;
     let fitted = fitted.map_err(|e| Failure::bad_file(form.goal.path, e))?;
     if let Some(line) = fitted.line() {
         item.warnings.push(line);
@@ -202,13 +135,13 @@ pub(crate) fn write(
     if let Some(spec) = export.print() {
         print(form, &spec, &mut whole, &mut items[0], machine)?;
     }
-    fit(form, &mut whole, &mut items[0], cache)?;
     if export.names {
         let Whole { plant, model, levels } = &mut whole;
         let rest = levels.copies.iter_mut().map(|(rest, _)| rest);
         let all = levels.lods.iter_mut().chain(rest).chain([&mut *model]);
         all.for_each(|model| name_after(&plant.name, model));
     }
+    fit(form, &mut whole, &mut items[0], cache)?;
     if let Some(report) = export.report().filter(|_| !machine.quiet) {
         say::line(&format!("for {}: {}", report.name, report.set.join(", ")));
     }
@@ -216,8 +149,9 @@ pub(crate) fn write(
         return write_assembly(outputs, form, made, &mut items[0], machine);
     }
     let Whole { plant, model, levels } = &whole;
-    let (one, gltf) = (form.is_in_one_file(), form.gltf());
-    let of_file = split(model, levels);
+    let file = form.file();
+    let (one, gltf) = (file.is_one_file, file.format);
+    let of_file = levels.split(model);
     let main = form.goal.path;
     let all = std::iter::once((model, "-o", main.to_path_buf()));
     let all = all.chain(levels.lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(main, level))));
@@ -225,7 +159,7 @@ pub(crate) fn write(
         machine.cancel.check()?;
         let goal = Goal { by, path: &path, packing: export.packing(), ..form.goal };
         let in_levels = |outputs: &mut Outputs, levels: &[Level<'_>], cache: &mut PngCache| {
-            files::write_gltf(outputs, goal, gltf, |out| form.write_levels(plant, levels, cache, out))
+            files::write_gltf(outputs, goal, gltf, |out| file.write_levels(plant, levels, cache, out))
         };
         let (written, write_ms) = machine.timed(|| match level {
             0 if one => in_levels(outputs, &of_file, cache).map(|()| PlantWritten::default()),

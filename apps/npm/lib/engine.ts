@@ -5,7 +5,8 @@ import { type Core, work } from './work.js';
 
 /** Does what is asked. */
 export interface Engine {
-  ask(asking: Asking, signal?: AbortSignal): Promise<Answer | string>;
+  /** `first` gets the coarse copy of a large tree, before the answer. */
+  ask(asking: Asking, signal?: AbortSignal, first?: (answer: Answer) => void): Promise<Answer | string>;
   /** Gives back the memory of the core; the next request starts it again. */
   close(): void;
 }
@@ -14,7 +15,7 @@ export interface Engine {
 export function here(load: () => Promise<Core>): Engine {
   let core: Promise<Core> | undefined;
   return {
-    async ask(asking, signal) {
+    async ask(asking, signal, first = () => {}) {
       core ??= load();
       let ready: Core;
       try {
@@ -25,7 +26,7 @@ export function here(load: () => Promise<Core>): Engine {
       }
       signal?.throwIfAborted();
       try {
-        return work(ready, asking);
+        return work(ready, asking, first);
       } catch (e) {
         if (!(e instanceof BurgeonError)) core = undefined;
         throw e;
@@ -40,6 +41,7 @@ export function here(load: () => Promise<Core>): Engine {
 interface Job {
   readonly number: number;
   readonly asking: Asking;
+  first(answer: Answer): void;
   resolve(answer: Answer | string): void;
   reject(why: unknown): void;
 }
@@ -72,6 +74,10 @@ export function beside(spawn: () => Beside): Engine {
     made.onmessage = ({ data }) => {
       const job = jobs[0];
       if (job?.number !== data.number) return;
+      if ('first' in data) {
+        job.first(data.first);
+        return;
+      }
       jobs.shift();
       if ('answer' in data) job.resolve(data.answer);
       else if (typeof data.refused !== 'string') job.reject(new BurgeonError(data.refused));
@@ -92,7 +98,7 @@ export function beside(spawn: () => Beside): Engine {
     return made;
   };
   return {
-    ask(asking, signal) {
+    ask(asking, signal, first = () => {}) {
       return new Promise((resolve, reject) => {
         if (signal?.aborted) {
           reject(signal.reason);
@@ -115,7 +121,7 @@ export function beside(spawn: () => Beside): Engine {
           };
         };
         signal?.addEventListener('abort', stopped, { once: true });
-        jobs.push({ number, asking, resolve: done(resolve), reject: done(reject) });
+        jobs.push({ number, asking, first, resolve: done(resolve), reject: done(reject) });
         if (jobs.length === 1) next();
       });
     },

@@ -2,7 +2,7 @@
 import type { Engine } from './engine.js';
 import { unknown, wrong } from './errors.js';
 import { findThree, Plant } from './plant.js';
-import type { Asking } from './protocol.js';
+import type { Answer, Asking } from './protocol.js';
 import type { FLOWERS, FlowerSpec, LeafSpec, SketchSpec, SkinSpec, TREES, TreeSpec } from './spec.js';
 import type { Asked, FlowerAsked, Json, LeafAsked, SketchAsked, TreeAsked } from './wire.js';
 
@@ -28,6 +28,11 @@ export interface Common {
   readonly lods?: number;
   /** The program that a file `glb` is for: `three`, `blender`, `unity`, `unreal` or `godot` (docs/engines). */
   readonly engine?: string;
+  /** Most triangles of the plant, 100 or more: it becomes the first level of detail within it. */
+  readonly triangles?: number;
+  /** Most megabytes of the file `glb`, which `files` must name, 0.001 to 4000: textures become smaller first, then the plant
+   * becomes the first level of detail that fits. What was reduced is among the report's warnings. */
+  readonly megabytes?: number;
   /** How many times the usual limits may be exceeded, 1 to 4. Default 1. */
   readonly budget?: number;
   /** Files to write as well. */
@@ -46,8 +51,15 @@ export interface SkinFields extends Fields<Pick<SkinSpec, 'detail' | 'sides' | '
 
 /** Fields of a tree, by which those of the species are replaced. */
 export interface GrowOptions extends Common, SkinFields {
-  /** Scales the wood to this height, metres. */
+  /** Scales the wood to this height, metres, at whatever age. */
   readonly height_m?: number;
+  /** Grows to this height, metres, within what the species reaches: at the age that comes nearest, and scaled by the rest. */
+  readonly height?: number;
+  /** Grows to this diameter of the stem at 1.3 m, metres, in the same way. */
+  readonly dbh?: number;
+  /** Gets a coarse copy of a large tree as soon as it has grown, without textures, files and wind; the tree itself comes
+   * later, the same as without it. A small tree comes at once, and there is no copy. */
+  readonly first?: (coarse: Plant) => void;
   /** Fields of its spec: `{ age: 30, leaves: { leaf_keep: 0.5 } }`. */
   readonly fields?: Fields<TreeSpec>;
 }
@@ -96,7 +108,19 @@ export interface Makers {
 
 const SKIN = ['detail', 'sides', 'textures'] as const;
 
-const COMMON = ['seed', 'wind', 'lods', 'engine', 'budget', 'files', 'measures', 'signal', 'fields'] as const;
+const COMMON = [
+  'seed',
+  'wind',
+  'lods',
+  'engine',
+  'triangles',
+  'megabytes',
+  'budget',
+  'files',
+  'measures',
+  'signal',
+  'fields',
+] as const;
 
 /** `more`: the options that not all makers have. */
 function common(options: Common & SkinFields & { readonly fields?: object }, more: readonly string[]): Asked {
@@ -121,14 +145,19 @@ function common(options: Common & SkinFields & { readonly fields?: object }, mor
     },
     lods: options.lods === undefined ? null : whole('lods', options.lods, 6),
     engine: options.engine ?? null,
+    triangles:
+      options.triangles === undefined ? null : whole('triangles', options.triangles, MOST_TRIANGLES, 100),
+    megabytes: options.megabytes ?? null,
     ...(options.budget === undefined ? {} : { budget: options.budget }),
     files: [...(options.files ?? [])],
   };
 }
 
-function whole(name: string, value: number, most: number): number {
-  if (!Number.isInteger(value) || value < 0 || value > most)
-    throw wrong(name, value, `a whole number, 0 to ${most}`);
+const MOST_TRIANGLES = 4e9;
+
+function whole(name: string, value: number, most: number, least = 0): number {
+  if (!Number.isInteger(value) || value < least || value > most)
+    throw wrong(name, value, `a whole number, ${least} to ${most}`);
   return value;
 }
 
@@ -169,19 +198,36 @@ function points(strokes: Strokes, yUp: boolean): { points: Float64Array; counts:
 
 /** The makers of a core. */
 export function makers(engine: Engine): Makers {
-  const make = async (asking: Omit<Asking, 'seed' | 'measures'>, options: Common): Promise<Plant> => {
-    const full: Asking = { ...asking, seed: seedOf(options.seed), measures: options.measures ?? false };
-    const [answer] = await Promise.all([engine.ask(full, options.signal), findThree()]);
+  const make = async (
+    asking: Omit<Asking, 'seed' | 'measures'>,
+    options: Common & Pick<GrowOptions, 'first'>,
+  ): Promise<Plant> => {
+    const { first } = options;
+    if (first !== undefined && typeof first !== 'function') throw wrong('first', first, 'a function');
+    const full: Asking = {
+      ...asking,
+      seed: seedOf(options.seed),
+      measures: options.measures ?? false,
+      first: first !== undefined,
+    };
+    let shown = Promise.resolve();
+    const look = (coarse: Answer): void => {
+      shown = findThree().then(() => first?.(new Plant(coarse)));
+    };
+    const [answer] = await Promise.all([engine.ask(full, options.signal, look), findThree()]);
+    await shown;
     if (typeof answer === 'string') throw new Error('a plant was asked for');
     return new Plant(answer);
   };
   return {
     async grow(tree, options = {}) {
       const asked: TreeAsked = {
-        common: common(options, [...SKIN, 'texture_size', 'height_m']),
+        common: common(options, [...SKIN, 'texture_size', 'height_m', 'height', 'dbh', 'first']),
         preset: typeof tree === 'string' ? tree : null,
         toml: typeof tree === 'object' && tree ? tree.toml : null,
         height_m: options.height_m ?? null,
+        height: options.height ?? null,
+        dbh: options.dbh ?? null,
       };
       return make({ kind: 'grow', asked: text(asked) }, options);
     },

@@ -8,6 +8,8 @@ export interface Asking {
   readonly asked: string;
   readonly seed: bigint;
   readonly measures: boolean;
+  /** Whether a coarse copy of a large tree is wanted first. */
+  readonly first?: boolean;
   readonly file?: Uint8Array;
   readonly points?: Float64Array;
   readonly counts?: Uint32Array;
@@ -73,5 +75,6 @@ export interface Answer {
 
 /** What a worker says. */
 export type Said =
+  | { readonly number: number; readonly first: Answer }
   | { readonly number: number; readonly answer: Answer | string }
   | { readonly number: number; readonly refused: Refusal | string };

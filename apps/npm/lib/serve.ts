@@ -13,7 +13,9 @@ export interface Scope {
 export function serve(core: Promise<Core>, scope = globalThis as unknown as Scope): void {
   scope.onmessage = async ({ data: { number, asking } }) => {
     try {
-      const answer = work(await core, asking);
+      const answer = work(await core, asking, (first) =>
+        scope.postMessage({ number, first }, buffers(first)),
+      );
       scope.postMessage({ number, answer }, buffers(answer));
     } catch (e) {
       scope.postMessage({ number, refused: e instanceof BurgeonError ? sent(e) : String(e) });

@@ -420,8 +420,12 @@ export type Asked = {
   files?: string[];
   /** Coarser copies to make as well, 0 to 6; by default none, or as many as the program wants. */
   lods?: number | null;
+  /** Most megabytes of the file `glb`, 0.001 to 4000: textures become smaller first, then it becomes the first level of detail that fits. */
+  megabytes?: number | null;
   /** Fields of the meshing. */
   skin?: SkinAsked;
+  /** Most triangles of the finest copy, 100 or more: it becomes the first level of detail within it. */
+  triangles?: number | null;
 };
 
 /** A flower on a day. */
@@ -472,6 +476,10 @@ export type SkinAsked = {
 export type TreeAsked = {
   /** Options of all makers. */
   common?: Asked;
+  /** Diameter at breast height in metres to which it grows, in the same way. */
+  dbh?: number | null;
+  /** Height in metres to which it grows: it has the age at which it comes nearest, and is scaled by the rest. */
+  height?: number | null;
   /** Height in metres to which the wood is scaled. */
   height_m?: number | null;
   /** A species. */

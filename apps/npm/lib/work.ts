@@ -18,32 +18,65 @@ interface Made {
   free(): void;
 }
 
+/** A tree that is asked for. */
+interface Growing {
+  first(): Made | undefined;
+  /** Frees it, too. */
+  whole(): Made;
+  free(): void;
+}
+
 /** A built core; the small one makes trees alone. */
 export interface Core {
-  grow(asked: string, seed: bigint): Made;
+  grow(asked: string, seed: bigint): Growing;
   schema(maker: string): string;
   sketch?(asked: string, file: Uint8Array, points: Float64Array, counts: Uint32Array, seed: bigint): Made;
   leaf?(asked: string, seed: bigint): Made;
   bloom?(asked: string, seed: bigint): Made;
 }
 
-/** Does what is asked; throws what `refusedBy` makes of errors. */
-export function work(core: Core, asking: Asking): Answer | string {
+/** Does what is asked; throws what `refusedBy` makes of errors. `first` gets the coarse copy of a large tree, if it is wanted. */
+export function work(core: Core, asking: Asking, first: (answer: Answer) => void): Answer | string {
   try {
     if (asking.kind === 'schema') return core.schema(asking.asked);
-    const made = make(core, asking);
-    try {
-      return answer(made, asking);
-    } finally {
-      made.free();
-    }
+    return taken(make(core, asking, first), asking, wanted(asking));
   } catch (e) {
     throw refusedBy(e);
   }
 }
 
-function make(core: Core, { kind, asked, seed, file, points, counts }: Asking): Made {
-  if (kind === 'grow') return core.grow(asked, seed);
+/** The files that are asked for. */
+function wanted({ asked }: Asking): string[] {
+  return (JSON.parse(asked) as { common: { files?: string[] } }).common.files ?? [];
+}
+
+/** Takes all that was made out of the memory of the core. */
+function taken(made: Made, asking: Asking, files: string[]): Answer {
+  try {
+    return answer(made, asking, files);
+  } finally {
+    made.free();
+  }
+}
+
+function grown(core: Core, asking: Asking, first: (answer: Answer) => void): Made {
+  const growing = core.grow(asking.asked, asking.seed);
+  if (asking.first) {
+    let coarse: Made | undefined;
+    try {
+      coarse = growing.first();
+    } catch (e) {
+      growing.free();
+      throw e;
+    }
+    if (coarse) first(taken(coarse, asking, []));
+  }
+  return growing.whole();
+}
+
+function make(core: Core, asking: Asking, first: (answer: Answer) => void): Made {
+  const { kind, asked, seed, file, points, counts } = asking;
+  if (kind === 'grow') return grown(core, asking, first);
   const made =
     kind === 'sketch'
       ? core.sketch?.(
@@ -60,7 +93,7 @@ function make(core: Core, { kind, asked, seed, file, points, counts }: Asking): 
   return made;
 }
 
-function answer(made: Made, { asked, measures }: Asking): Answer {
+function answer(made: Made, { measures }: Asking, files: string[]): Answer {
   const view = JSON.parse(made.view()) as PlantView;
   const part = (level: number, i: number): PartArrays => ({
     positions: made.column(level, i, 'positions'),
@@ -72,7 +105,6 @@ function answer(made: Made, { asked, measures }: Asking): Answer {
     indices: made.indices(level, i),
     pieces: made.pieces(level, i),
   });
-  const wanted = (JSON.parse(asked) as { common: { files?: string[] } }).common.files ?? [];
   return {
     view,
     levels: view.levels.map(({ parts }, level) => parts.map((_, i) => part(level, i))),
@@ -97,7 +129,7 @@ function answer(made: Made, { asked, measures }: Asking): Answer {
         flower: made.handles('organ_flower'),
       },
     },
-    files: Object.fromEntries(wanted.map((extension) => [extension, made.take_file(extension)])),
+    files: Object.fromEntries(files.map((extension) => [extension, made.take_file(extension)])),
     measures: measures ? made.measures() : '',
   };
 }

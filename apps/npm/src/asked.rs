@@ -2,8 +2,16 @@
 
 use std::fmt::Display;
 
+#[cfg(feature = "makers")]
+use burgeon::formats::{ExportSpec, ModelFormat};
+#[cfg(feature = "makers")]
+use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
-use burgeon::{Coded, Engine, EngineReport, ExportChoice, Refusal, Run, Slip, Spec, SpecFault};
+use burgeon::{
+    Allowance, Coded, Engine, EngineReport, ExportChoice, Refusal, Run, Slip, Spec, SpecFault, TreeGoal,
+};
+#[cfg(feature = "makers")]
+use burgeon::{FileForm, name_after};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -33,6 +41,11 @@ impl Refused {
         let hint = burgeon::meant(name, choices.split(", "));
         let message = format!("{path}: {name:?} is not known; there are {choices}{hint}");
         Self::with("spec-choice", &[("path", path), ("name", name), ("choices", choices)], message)
+    }
+
+    /// Returns the error for an option that nothing uses, or that another one excludes.
+    pub(crate) fn unused(name: &str, message: String) -> Self {
+        Self::with("field-range", &[("field", name), ("value", "given"), ("range", "left out")], message)
     }
 
     fn with(code: &str, fields: &[(&str, &str)], message: String) -> Self {
@@ -80,6 +93,11 @@ pub struct Asked {
     /// The program that a file `glb` is for, such as `unity`: packed, blown and named as its importer takes it. The coarser
     /// copies are nodes of that file, or come beside it as `lod1.glb` and so on.
     pub engine: Option<String>,
+    /// Most triangles of the finest copy, 100 or more: it becomes the first level of detail within it.
+    pub triangles: Option<u64>,
+    /// Most megabytes of the file `glb`, 0.001 to 4000: textures become smaller first, then it becomes the first level of
+    /// detail that fits.
+    pub megabytes: Option<f64>,
     /// How many times the usual limits may be exceeded, 1 to 4.
     pub budget: Option<f64>,
     /// Files of the finest copy by their extensions: `glb`, `mtg`, `opf`.
@@ -111,6 +129,36 @@ pub struct TreeAsked {
     pub toml: Option<String>,
     /// Height in metres to which the wood is scaled.
     pub height_m: Option<f64>,
+    /// Height in metres to which it grows: it has the age at which it comes nearest, and is scaled by the rest.
+    pub height: Option<f64>,
+    /// Diameter at breast height in metres to which it grows, in the same way.
+    pub dbh: Option<f64>,
+}
+
+impl TreeAsked {
+    /// Returns the size that it grows to, if one is given.
+    pub(crate) fn goal(&self) -> Result<Option<TreeGoal>, Refused> {
+        let age = self.common.fields.get("age").filter(|age| !age.is_null());
+        let given = [
+            ("height", self.height.is_some()),
+            ("dbh", self.dbh.is_some()),
+            ("height_m", self.height_m.is_some()),
+            ("age", age.is_some()),
+        ];
+        let given: Vec<&str> = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
+        if self.height.is_some() || self.dbh.is_some() {
+            if let [first, second, ..] = given[..] {
+                return Err(Refused::unused(
+                    second,
+                    format!("{first} and {second} exclude each other: give one"),
+                ));
+            }
+        }
+        if let Some(height) = self.height {
+            return number("height", height, TreeGoal::HEIGHTS_M).map(TreeGoal::Height).map(Some);
+        }
+        self.dbh.map(|dbh| number("dbh", dbh, TreeGoal::DIAMETERS_M).map(TreeGoal::Dbh)).transpose()
+    }
 }
 
 /// How files are written for a program.
@@ -118,6 +166,43 @@ pub(crate) struct Settled {
     pub(crate) engine: Engine,
     pub(crate) choice: ExportChoice,
     pub(crate) report: EngineReport,
+}
+
+#[cfg(feature = "makers")]
+impl Settled {
+    /// Returns the form of the file.
+    pub(crate) fn file(&self) -> FileForm {
+        let nodes = Some(self.engine).filter(|engine| engine.has_nodes(&self.choice));
+        FileForm {
+            format: ModelFormat::Glb,
+            axes: ExportSpec::default(),
+            packing: self.choice.packing,
+            sways: self.choice.sways,
+            is_one_file: nodes.is_some(),
+            nodes,
+        }
+    }
+
+    /// Returns a model with its names in files.
+    pub(crate) fn named(&self, plant: &str, model: &Model) -> Model {
+        let mut model = model.clone();
+        if self.choice.has_names {
+            name_after(plant, &mut model);
+        }
+        model
+    }
+}
+
+#[cfg(not(feature = "makers"))]
+impl Settled {
+    /// Returns the error for a file for a program.
+    pub(crate) fn unwritten(&self) -> Refused {
+        let engine = self.engine.word();
+        let told = format!(
+            "files for a program (engine {engine}) are written by `burgeon`, not by `burgeon/growth`"
+        );
+        Refused::plain("write", told)
+    }
 }
 
 impl Asked {
@@ -135,6 +220,25 @@ impl Asked {
 
     pub(crate) fn wind(&self) -> bool {
         self.skin.wind.unwrap_or(true)
+    }
+
+    /// Returns the largest size that is wanted.
+    pub(crate) fn allowance(&self) -> Result<Allowance, Refused> {
+        if let Some(count) = self.triangles {
+            let (least, most) = Allowance::TRIANGLES;
+            number("triangles", count as f64, (least as f64, most as f64))?;
+        }
+        let megabytes = self.megabytes.map(|m| number("megabytes", m, Allowance::MEGABYTES)).transpose()?;
+        if megabytes.is_some() && !self.files.iter().any(|f| f == "glb") {
+            let line = "megabytes is of a file glb: ask for it with files: ['glb']";
+            return Err(Refused::unused("megabytes", line.into()));
+        }
+        Ok(Allowance::new(self.triangles, megabytes))
+    }
+
+    /// Returns the number of levels of detail to make in addition to the finest: with an allowance, more than there will be.
+    pub(crate) fn levels_made(&self) -> Result<u32, Refused> {
+        Ok(self.allowance()?.levels(self.levels()?))
     }
 
     /// Returns the number of levels of detail in addition to the finest.
@@ -161,8 +265,13 @@ impl Asked {
         &self,
         compute: impl FnOnce(&Run<'_>) -> Result<T, E>,
     ) -> Result<T, Refused> {
+        self.computed(compute)?.map_err(|e| refused(&e))
+    }
+
+    /// Computes within the requested budget; errors are left to the caller.
+    pub(crate) fn computed<T>(&self, compute: impl FnOnce(&Run<'_>) -> T) -> Result<T, Refused> {
         let times = number("budget", self.budget.unwrap_or(1.0), (1.0, 4.0))?;
-        with_budget(times, compute).map_err(|e| refused(&e))
+        Ok(with_budget(times, compute))
     }
 }
 

@@ -14,7 +14,7 @@ mod made;
 mod makers;
 mod view;
 
-use burgeon::{Preset, Seed, TreeEvaluator, TreeOptions, TreeSpec};
+use burgeon::{HeightError, Preset, Seed, TreeEvaluator, TreeOptions, TreeSpec};
 use wasm_bindgen::prelude::*;
 
 pub use asked::{Asked, Refused, SkinAsked, TreeAsked};
@@ -25,12 +25,24 @@ pub use view::*;
 
 use crate::asked::{from_json, refused};
 
-/// Grows a tree: `TreeAsked` as JSON.
+/// A tree that is asked for.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Growing {
+    asked: TreeAsked,
+    spec: TreeSpec,
+    preset: Option<&'static str>,
+    seed: Seed,
+    options: TreeOptions,
+    tree: TreeEvaluator,
+}
+
+/// Reads what is asked of a tree: `TreeAsked` as JSON.
 ///
 /// # Errors
 /// The fault of the request, as `Refusal` in JSON.
 #[wasm_bindgen]
-pub fn grow(asked: &str, seed: u64) -> Result<Made, Refused> {
+pub fn grow(asked: &str, seed: u64) -> Result<Growing, Refused> {
     host::tell_of_panics();
     let asked: TreeAsked = from_json(asked)?;
     let (base, preset) = match (&asked.preset, &asked.toml) {
@@ -45,13 +57,44 @@ pub fn grow(asked: &str, seed: u64) -> Result<Made, Refused> {
         }
         (None, None) => (TreeSpec::default(), None),
     };
-    let spec = asked.common.spec(&base)?;
+    let mut spec = asked.common.spec(&base)?;
     let (skin, seed) = (asked.common.skin()?, Seed::new(seed));
-    let height_m = asked.height_m.map(|h| asked::number("height_m", h, (0.001, 1000.0))).transpose()?;
+    let height_m = match asked.goal()? {
+        Some(goal) => {
+            let height = asked.common.computed(|run| burgeon::aim_at(&mut spec, seed, goal, run))?;
+            Some(height.map_err(|e| match e {
+                HeightError::Tree(e) => refused(&e),
+                e => Refused::plain("height", e.to_string()),
+            })?)
+        }
+        None => asked.height_m.map(|h| asked::number("height_m", h, (0.001, 1000.0))).transpose()?,
+    };
     let options = TreeOptions { skin, height_m, ..TreeOptions::default() };
-    let mut tree = TreeEvaluator::default();
-    let item = asked.common.run(|run| tree.update_unedited(&spec, seed, &options, run))?;
-    Made::of_tree(tree, (item, preset), &asked.common)
+    Ok(Growing { asked, spec, preset, seed, options, tree: TreeEvaluator::default() })
+}
+
+#[wasm_bindgen]
+impl Growing {
+    /// Makes a coarse copy of a large tree, without textures: it is ready long before the whole, which then takes as much less
+    /// time.
+    ///
+    /// # Errors
+    /// The fault of the request, as `Refusal` in JSON.
+    pub fn first(&mut self) -> Result<Option<Made>, Refused> {
+        let Self { asked, spec, seed, options, tree, .. } = self;
+        let look = asked.common.run(|run| tree.preview_unedited(spec, *seed, options, run))?;
+        look.map(|look| Made::of_look(look, self.preset)).transpose()
+    }
+
+    /// Makes the tree; equal whether there was a first copy or none.
+    ///
+    /// # Errors
+    /// The fault of the request, as `Refusal` in JSON.
+    pub fn whole(self) -> Result<Made, Refused> {
+        let Self { asked, spec, preset, seed, options, mut tree } = self;
+        let item = asked.common.run(|run| tree.update_unedited(&spec, seed, &options, run))?;
+        Made::of_tree(tree, (item, preset), &asked.common)
+    }
 }
 
 /// Returns the keys of trees, and of flowers if there are any.

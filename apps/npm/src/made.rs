@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use burgeon::formats::{self, ExportSpec};
 #[cfg(feature = "makers")]
-use burgeon::formats::{PngCache, WriteError};
+use burgeon::formats::WriteError;
+use burgeon::formats::{self, ExportSpec, PngCache};
 use burgeon::mesh::{AlphaMode, Model, Part, Texture};
 use burgeon::plant::Plant;
 use burgeon::skin::{Layout, Owner};
-use burgeon::{ItemReport, TreeEvaluator, part_of_axis, part_of_organ};
-#[cfg(feature = "makers")]
-use burgeon::{name_after, write_engine_glb};
+use burgeon::{Counts, ItemReport, Levels, TreeEvaluator, part_of_axis, part_of_organ};
 use wasm_bindgen::prelude::*;
 
 use crate::asked::{Asked, Refused, Settled};
@@ -44,7 +42,7 @@ impl Made {
         let (model, plant) = tree.model().zip(tree.plant()).ok_or_else(lost)?;
         let owners = tree.layout().map(|layout| (plant.clone(), layout.clone()));
         let mut levels = vec![Level { model: model.clone(), owners }];
-        for level in 1..=asked.levels()? {
+        for level in 1..=asked.levels_made()? {
             let (model, owners) = asked.run(|run| tree.laid_out_at(level, run))?.ok_or_else(lost)?;
             levels.push(Level { model, owners: Some(owners) });
         }
@@ -53,15 +51,32 @@ impl Made {
         Self::new("tree", preset, item, (levels, plant), None, asked)
     }
 
+    /// Makes the coarse copy of a tree.
+    pub(crate) fn of_look(
+        (model, owners): (Model, (Plant, Layout)),
+        preset: Option<&str>,
+    ) -> Result<Self, Refused> {
+        let (name, plant) = (owners.0.name.clone(), owners.0.clone());
+        let counts = Counts {
+            vertices: model.vertex_count() as u64,
+            triangles: model.triangle_count() as u64,
+            ..Counts::of_plant(&plant)
+        };
+        let report = ItemReport { name, counts, ..ItemReport::default() };
+        let level = Level { model, owners: Some(owners) };
+        Self::new("tree", preset, report, (vec![level], plant), None, &Asked::default())
+    }
+
     pub(crate) fn new(
         maker: &'static str,
         preset: Option<&str>,
-        report: ItemReport,
+        mut report: ItemReport,
         (levels, plant): (Vec<Level>, Plant),
         days: Option<[f64; 2]>,
         asked: &Asked,
     ) -> Result<Self, Refused> {
         let settled = asked.settled()?;
+        let levels = within(levels, (&plant, &mut report), settled.as_ref(), asked)?;
         let bounds = levels.first().map(|l| l.model.bounds()).filter(|b| !b.is_empty());
         let (min, max) = bounds.map_or_else(Default::default, |b| (b.min.to_array(), b.max.to_array()));
         let mut textures: Vec<Arc<Texture>> = Vec::new();
@@ -99,32 +114,16 @@ impl Made {
     /// The files of all levels for a program: `glb`, `lod1.glb`, ..., or one `glb` with all levels as nodes.
     #[cfg(feature = "makers")]
     fn files_for(&self, settled: &Settled) -> Result<Vec<(String, Vec<u8>)>, Refused> {
-        let (choice, failed) = (&settled.choice, |e: WriteError| Refused::plain("write", e.to_string()));
+        let (form, failed) = (settled.file(), |e: WriteError| Refused::plain("write", e.to_string()));
         let (mut cache, mut files) = (PngCache::new(), Vec::new());
-        let named = |level: &Level| {
-            let mut model = level.model.clone();
-            if choice.has_names {
-                name_after(&self.view.name, &mut model);
-            }
-            model
-        };
-        if settled.engine.has_nodes(choice) {
-            let models: Vec<Model> = self.levels.iter().map(named).collect();
-            let (models, mut bytes) = (models.iter().collect::<Vec<_>>(), Vec::new());
-            write_engine_glb(settled.engine, &self.plant, &models, &mut cache, &mut bytes).map_err(failed)?;
-            return Ok(vec![("glb".to_owned(), bytes)]);
-        }
-        for (k, level) in self.levels.iter().enumerate() {
-            let model = named(level);
+        let models: Vec<Model> =
+            self.levels.iter().map(|l| settled.named(&self.view.name, &l.model)).collect();
+        let levels: Vec<formats::Level<'_>> = models.iter().map(formats::Level::plain).collect();
+        let each: Vec<&[formats::Level<'_>]> =
+            if form.is_one_file { vec![&levels[..]] } else { levels.chunks(1).collect() };
+        for (k, levels) in each.into_iter().enumerate() {
             let mut bytes = Vec::new();
-            let rig =
-                choice.sways.then(|| burgeon::skin::sway(&model, burgeon::skin::gust(&model))).flatten();
-            let written = match (rig, choice.packing) {
-                (Some(rig), _) => formats::write_glb_rigged(&model, &rig, &mut cache, &mut bytes),
-                (None, Some(packing)) => formats::write_glb_packed(&model, packing, &mut cache, &mut bytes),
-                (None, None) => formats::write_glb_with(&model, &mut cache, &mut bytes),
-            };
-            written.map_err(failed)?;
+            form.write_glb(&self.plant, levels, &mut cache, &mut bytes).map_err(failed)?;
             files.push((if k == 0 { "glb".to_owned() } else { format!("lod{k}.glb") }, bytes));
         }
         Ok(files)
@@ -133,11 +132,7 @@ impl Made {
     /// Trees alone are half of the download: they have no writers for programs.
     #[cfg(not(feature = "makers"))]
     fn files_for(&self, settled: &Settled) -> Result<Vec<(String, Vec<u8>)>, Refused> {
-        let engine = settled.engine.word();
-        let told = format!(
-            "files for a program (engine {engine}) are written by `burgeon`, not by `burgeon/growth`"
-        );
-        Err(Refused::plain("write", told))
+        Err(settled.unwritten())
     }
 
     fn file(&self, extension: &str) -> Result<Vec<u8>, Refused> {
@@ -164,6 +159,75 @@ impl Made {
     fn part(&self, level: usize, part: usize) -> Option<&Part> {
         self.levels.get(level)?.model.parts.get(part)
     }
+}
+
+/// Reduces a plant to the allowed size; the finest level that fits becomes the plant.
+fn within(
+    levels: Vec<Level>,
+    (plant, report): (&Plant, &mut ItemReport),
+    settled: Option<&Settled>,
+    asked: &Asked,
+) -> Result<Vec<Level>, Refused> {
+    let allowance = asked.allowance()?;
+    if !allowance.is_any() {
+        return Ok(levels);
+    }
+    let (models, mut owners): (Vec<Model>, Vec<_>) = levels.into_iter().map(|l| (l.model, l.owners)).unzip();
+    let mut models = models.into_iter();
+    let model = models.next().unwrap_or_default();
+    let all = Levels { lods: models.collect(), ..Levels::default() };
+    let name = report.name.clone();
+    let mut cache = PngCache::new();
+    let weigh = |model: &Model, levels: &Levels| {
+        weight((plant, &name), std::iter::once(model).chain(&levels.lods), settled, &mut cache)
+    };
+    let fitted = all.within(model, allowance, (asked.levels()?, false), weigh)?;
+    let fitted = fitted.map_err(|e| Refused::plain("budget", e.to_string()))?;
+    report.warnings.extend(fitted.line());
+    report.counts.vertices = fitted.model.vertex_count() as u64;
+    report.counts.triangles = fitted.model.triangle_count() as u64;
+    let kept = std::iter::once(fitted.model).chain(fitted.levels.lods);
+    Ok(kept.zip(owners.drain(fitted.level..)).map(|(model, owners)| Level { model, owners }).collect())
+}
+
+/// Returns the bytes of the file `glb` of a model, the first one.
+#[cfg(feature = "makers")]
+fn weight<'a>(
+    (plant, name): (&Plant, &str),
+    models: impl Iterator<Item = &'a Model>,
+    settled: Option<&Settled>,
+    cache: &mut PngCache,
+) -> Result<u64, Refused> {
+    let failed = |e: WriteError| Refused::plain("write", e.to_string());
+    let Some(settled) = settled else {
+        return plain_weight(models, cache);
+    };
+    let models: Vec<Model> = models.map(|model| settled.named(name, model)).collect();
+    let levels: Vec<formats::Level<'_>> = models.iter().map(formats::Level::plain).collect();
+    settled.file().weigh(plant, &levels, cache).map_err(failed)
+}
+
+/// Returns the bytes of the file `glb` of a model, the first one: there is no writer for programs.
+#[cfg(not(feature = "makers"))]
+fn weight<'a>(
+    _: (&Plant, &str),
+    models: impl Iterator<Item = &'a Model>,
+    settled: Option<&Settled>,
+    cache: &mut PngCache,
+) -> Result<u64, Refused> {
+    settled.map_or_else(|| plain_weight(models, cache), |settled| Err(settled.unwritten()))
+}
+
+fn plain_weight<'a>(
+    mut models: impl Iterator<Item = &'a Model>,
+    cache: &mut PngCache,
+) -> Result<u64, Refused> {
+    let mut bytes = Vec::new();
+    if let Some(model) = models.next() {
+        let written = formats::write_glb_with(model, cache, &mut bytes);
+        written.map_err(|e| Refused::plain("write", e.to_string()))?;
+    }
+    Ok(bytes.len() as u64)
 }
 
 fn part_view(part: &Part) -> PartView {

@@ -194,7 +194,7 @@ fn made(
     let structure = shown.plant.ok_or_else(lost)?;
     let owners = shown.owners.map(|layout| (structure.clone(), layout.clone()));
     let mut levels = vec![Level { model: shown.model.clone(), owners }];
-    for level in 1..=asked.levels()? {
+    for level in 1..=asked.levels_made()? {
         let model = asked.run(|run| scene.at_level(plant, level, run))?;
         levels.push(Level { model, owners: None });
     }

@@ -165,6 +165,71 @@ test('columns, tables and files fit together', async () => {
   assert.ok(tree.textures.every((t) => t.pixels.length === 4 * t.width * t.height));
 });
 
+test('a budget is kept, and an impossible one names the least', async () => {
+  const asked = { seed: 3, detail: 0.2, wind: false, files: ['glb'], fields: { age: 4 } };
+  const own = ['grow', 'hazel', '--seed', '3', '--detail', '0.2', '--age', '4', '--quiet', '-o'];
+  const theirs = (name, ...more) => {
+    const path = join(away, name);
+    execFileSync(native, [...own, path, ...more]);
+    return readFileSync(path);
+  };
+  const whole = await grow('hazel', asked);
+  const light = await grow('hazel', { ...asked, megabytes: 0.5 });
+  assert.ok(light.files.glb.length <= 500_000 && whole.files.glb.length > 500_000);
+  assert.ok(theirs('light.glb', '--megabytes', '0.5').equals(light.files.glb));
+  assert.match(light.report.warnings.join(), /to keep within the budget/);
+  const few = await grow('hazel', { ...asked, triangles: 4000, lods: 1, engine: 'unity' });
+  const counts = [0, 1].map((level) => few.meshes(level).reduce((sum, m) => sum + m.indices.length / 3, 0));
+  assert.ok(counts[0] <= 4000 && counts[1] < counts[0] && few.levels === 2, counts.join());
+  assert.equal(few.report.counts.triangles, counts[0]);
+  assert.ok(theirs('few.glb', '--triangles', '4000', '--lods', '1', '--for', 'unity').equals(few.files.glb));
+  await assert.rejects(grow('hazel', { ...asked, triangles: 100 }), /at least \d+ triangles/);
+  await assert.rejects(grow('hazel', { ...asked, megabytes: 0.001 }), /at least 0\.\d+ megabytes/);
+  await assert.rejects(grow('hazel', { megabytes: 1 }), /megabytes is of a file glb/);
+  await assert.rejects(grow('hazel', { triangles: 99 }), /triangles must be a whole number, 100 to/);
+});
+
+test('a tree grows to a height or a diameter as by the command', async () => {
+  const asked = { seed: 3, detail: 0.2, wind: false, measures: true };
+  for (const [name, value] of [
+    ['height', 2.5],
+    ['dbh', 0.02],
+  ]) {
+    const mine = await grow('hazel', { ...asked, [name]: value });
+    const words = ['grow', 'hazel', '--seed', '3', '--detail', '0.2', `--${name}`, String(value), '--json'];
+    const theirs = JSON.parse(execFileSync(native, words, { encoding: 'utf8' }));
+    assert.equal(mine.digest, theirs.items[0].digest, name);
+  }
+  await assert.rejects(grow('hazel', { height: 60 }), /60 m is out of reach/);
+  await assert.rejects(grow('hazel', { height: 2, dbh: 0.1 }), /height and dbh exclude each other/);
+  await assert.rejects(grow('hazel', { dbh: 0.1, fields: { age: 3 } }), /dbh and age exclude each other/);
+});
+
+test('a large tree is shown coarse first, and is the same afterwards', async () => {
+  const usual = await grow('oak', { seed: 2, detail: 0.2, lods: 1 });
+  const seen = [];
+  const tree = await grow('oak', { seed: 2, detail: 0.2, lods: 1, first: (coarse) => seen.push(coarse) });
+  const count = (plant) => plant.meshes().reduce((sum, m) => sum + m.indices.length / 3, 0);
+  assert.equal(seen.length, 1);
+  assert.ok(
+    count(seen[0]) > 1000 && 2 * count(seen[0]) < count(usual),
+    `${count(seen[0])} of ${count(usual)}`,
+  );
+  assert.equal(seen[0].report.counts.triangles, count(seen[0]));
+  assert.equal(seen[0].textures.length, 0);
+  const [low, high] = [usual, seen[0]].map((plant) => plant.bounds.max[1]);
+  assert.ok(Math.abs(low - high) < 0.05 * low, `${low} m, ${high} m`);
+  const plain = ({ report, ...view }) => ({ ...view, report: { ...report, timings_ms: 0 } });
+  assert.deepEqual(plain(tree.view), plain(usual.view));
+  for (const level of [0, 1]) assert.deepEqual(tree.meshes(level), usual.meshes(level));
+  assert.deepEqual(tree.textures, usual.textures);
+  await grow('hazel', { detail: 0.1, fields: { age: 2 }, first: () => assert.fail('it is small') });
+  const broken = () => {
+    throw new Error('the scene is gone');
+  };
+  await assert.rejects(grow('oak', { detail: 0.1, textures: false, first: broken }), /the scene is gone/);
+});
+
 test('strokes as points make a plant', async () => {
   const stem = Array.from({ length: 40 }, (_, i) => [0.2 * Math.sin(i / 9), i]);
   const up = await sketch([stem], { seed: 1 });
@@ -417,6 +482,8 @@ test('no option is ignored: it changes what comes out, or is refused by its name
   const skin = { detail: 0.3, sides: 9, textures: false, texture_size: 64 };
   const uses = [
     [(o) => grow('hazel', { fields: { age: 3 }, ...o }), { ...common, ...skin, height_m: 1 }],
+    [(o) => grow('hazel', { detail: 0.2, ...o }), { height: 2, dbh: 0.02, triangles: 9000, first: 'soon' }],
+    [(o) => grow('hazel', { detail: 0.2, files: ['glb'], ...o }), { megabytes: 0.5 }],
     [(o) => grow('hazel', { fields: { age: 3 }, textures: false, ...o }), { texture_size: 64 }],
     [(o) => sketch([stem], o), { ...common, detail: 0.3, name: 'mine', yUp: false }],
     [(o) => sketch(file, o), { ...common, detail: 0.3, name: 'mine', yUp: true, classes: { 0: 'blade' } }],

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use base::{Cancelled, Run, Stopped};
-use formats::Assembly;
+use formats::{Assembly, Level};
 use mesh::{Copies, Model, Texture};
 use plant::{AxisKind, OrganKind, Plant};
 use skin::{Layout, SkinSpec};
@@ -56,7 +56,7 @@ impl Levels {
         if spec.copies {
             levels.copies.push(skin::copies(plant, model, layout));
         }
-        for level in 1..=spec.lods.min(6) {
+        for level in 1..=spec.lods.min(MOST_LEVELS) {
             let Some((model, (plant, layout))) = at(level)? else { continue };
             if spec.copies {
                 levels.copies.push(skin::copies(&plant, &model, &layout));
@@ -75,6 +75,8 @@ impl Levels {
     }
 }
 
+/// Most coarser copies.
+const MOST_LEVELS: u32 = 6;
 /// Least axes of a plant that loses axes at coarser levels: of fewer, each is seen.
 const FEW_AXES: usize = 100;
 /// Least leaves of a plant that loses leaves at coarser levels: of fewer, each is seen.
@@ -97,7 +99,7 @@ pub(crate) fn level_of(
 ) -> Result<LaidOut, Stopped> {
     let mut last = Coarse::of_finest(fine);
     let mut made = next_level((plant, skin, fine), 1, &mut last, &mesh)?;
-    for at in 2..=level.min(6) {
+    for at in 2..=level.min(MOST_LEVELS) {
         made = next_level((plant, skin, fine), at, &mut last, &mesh)?;
     }
     Ok(made)
@@ -111,7 +113,9 @@ pub(crate) fn levels_of(
     mesh: impl Fn(&Plant, &SkinSpec) -> Result<(Model, Layout), Stopped>,
 ) -> Result<Vec<LaidOut>, Stopped> {
     let mut last = Coarse::of_finest(fine);
-    (1..=count.min(6)).map(|level| next_level((plant, skin, fine), level, &mut last, &mesh)).collect()
+    (1..=count.min(MOST_LEVELS))
+        .map(|level| next_level((plant, skin, fine), level, &mut last, &mesh))
+        .collect()
 }
 
 /// State that a level passes to the next.
@@ -234,7 +238,41 @@ pub enum AllowanceError {
 /// Most halvings of the sides of textures for a budget: of 512 pixels, 128 remain.
 const HALVINGS: u32 = 2;
 
+impl Allowance {
+    /// Range of [`Self::triangles`] in requests.
+    pub const TRIANGLES: (u64, u64) = (100, 4_000_000_000);
+    /// Range of [`Self::bytes`] in requests, in megabytes.
+    pub const MEGABYTES: (f64, f64) = (0.001, 4000.0);
+
+    /// Makes it from a request: triangles, and megabytes of a million bytes.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
+    pub fn new(triangles: Option<u64>, megabytes: Option<f64>) -> Self {
+        Self { triangles, bytes: megabytes.map(|m| (m * 1e6) as u64) }
+    }
+
+    /// Whether there is one.
+    pub fn is_any(&self) -> bool {
+        self.triangles.is_some() || self.bytes.is_some()
+    }
+
+    /// Returns the number of coarser copies to make where `lods` are asked for: with an allowance, the model may become one
+    /// that nobody asked for.
+    pub fn levels(&self, lods: u32) -> u32 {
+        if self.is_any() { MOST_LEVELS } else { lods }
+    }
+}
+
 impl Levels {
+    /// Returns a model and its levels as files hold them: each without the leaves that are copies, and these copies.
+    pub fn split<'a>(&'a self, model: &'a Model) -> Vec<Level<'a>> {
+        let all = std::iter::once(model).chain(&self.lods).enumerate();
+        let level = |(k, model): (usize, &'a Model)| {
+            let split = self.copies.get(k).map(|(rest, copies)| Level { model: rest, copies: &copies[..] });
+            split.unwrap_or(Level::plain(model))
+        };
+        all.map(level).collect()
+    }
+
     /// Finds the finest level that fits, as the model, with `lods` coarser ones, and the impostor if there is one.
     /// Smaller textures are preferred to fewer triangles. `weigh` returns the bytes of a model.
     ///

@@ -55,6 +55,7 @@ mod survey;
 mod template;
 mod trees;
 mod venation;
+mod weight;
 
 pub use assembly::{AssemblyError, assemble};
 pub use balls::{LeafBall, LeafBalls, leaf_balls};
@@ -121,11 +122,12 @@ pub use template::{LeafTemplate, TemplateError};
 pub use trees::{
     GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
     ScanTreeOptions, ScannedTreeError, StructureModel, StructureModelError, StructureOptions, TreeError,
-    TreeEvaluator, TreeOfDbh, TreeOptions, TreeSize, age_of_height, guided_methods, make_from_structure,
-    make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec, scale_to_height,
-    show_obstacles, tree_blade, tree_of_dbh, tree_schema, tree_size,
+    TreeEvaluator, TreeGoal, TreeOfDbh, TreeOptions, TreeSize, age_of_height, aim_at, guided_methods,
+    make_from_structure, make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec,
+    scale_to_height, show_obstacles, tree_blade, tree_of_dbh, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
+pub use weight::FileForm;
 
 pub use base::coded;
 pub use growth::{Bark, BladeSpec, BlossomSpec, Look, TreeSpec};

@@ -180,6 +180,7 @@ impl MadeFrom {
                 worn: self.worn.clone(),
                 ..tree.skin.clone()
             },
+            height_m: tree.height_m,
             leaf: self.leaf.clone(),
             edits: self.edits.clone(),
             obstacles: tree.obstacles.iter().map(|o| o.name.clone()).collect(),

@@ -179,6 +179,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
                 .iter()
                 .map(|o| ObstacleV3 { name: o.name.clone(), shape: (*o.shape).clone() })
                 .collect(),
+            height_m: t.height_m,
             skin: SkinV1::from(&t.skin),
             leaf: t.leaf.and_then(row),
         }),
@@ -404,7 +405,7 @@ fn spec_to_file(spec: &TreeSpec) -> Value {
 }
 
 fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
-    let TreeV3 { preset, spec, obstacles, skin, leaf } = tree;
+    let TreeV3 { preset, spec, obstacles, height_m, skin, leaf } = tree;
     let obstacles = obstacles
         .into_iter()
         .map(|o| NamedObstacle { name: shortened(&o.name), shape: Arc::new(o.shape) })
@@ -414,6 +415,7 @@ fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
         preset: preset.map(|p| shortened(&p)),
         spec: Arc::new(spec),
         obstacles,
+        height_m,
         skin: skin.spec().map_err(ProjectError::Setting)?,
         leaf: leaf.map(PlantId),
     })))

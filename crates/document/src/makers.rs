@@ -125,6 +125,8 @@ pub struct TreeSettings {
     pub spec: Arc<TreeSpec>,
     /// The obstacles that it grows around, in the tree's own coordinates; at most 64.
     pub obstacles: Vec<NamedObstacle>,
+    /// The height to which its wood is scaled, metres, above 0; without obstacles only.
+    pub height_m: Option<f64>,
     /// Settings for meshing the tree. Its `seed` is not saved.
     pub skin: SkinSpec,
     /// The plant of the scene whose leaf this tree bears instead of its own.
@@ -139,8 +141,28 @@ impl TreeSettings {
         if self.obstacles.iter().any(|o| !o.shape.is_finite()) {
             return Some(SettingFault::Obstacle);
         }
-        fault(&self.skin)
+        self.height_m.and_then(height_fault).or_else(|| fault(&self.skin))
     }
+
+    /// Replaces the spec. The height to which the tree is scaled is that of an age: with another age it grows as it does.
+    pub(crate) fn set_spec(&mut self, spec: Arc<TreeSpec>) {
+        if spec.age != self.spec.age {
+            self.height_m = None;
+        }
+        self.spec = spec;
+    }
+}
+
+/// Heights in metres to which trees are scaled.
+const HEIGHTS_M: [f64; 2] = [0.001, 1000.0];
+
+fn height_fault(height: f64) -> Option<SettingFault> {
+    let [least, most] = HEIGHTS_M;
+    let fault = || {
+        let (path, least, most) = ("height_m".into(), Some(least), Some(most));
+        SettingFault::Range(spec::RangeFault { path, value: height, least, most, above: None, unit: "m" })
+    };
+    (!(least..=most).contains(&height)).then(fault)
 }
 
 /// An obstacle with a name for its user.

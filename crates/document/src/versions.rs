@@ -16,7 +16,8 @@ use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
 use crate::state::is_width;
 use crate::{DocumentStroke, PhotoPlace, SettingFault};
 
-/// Version 7: as version 6, with groups of plants, and branches that are turned while they are moved. A program that
+/// Version 7: as version 6, with groups of plants, branches that are turned while they are moved, and trees that are
+/// scaled to a height. A program that
 /// reads version 6 would reject the new field names.
 pub(crate) type DocumentV7 = DocumentV6;
 
@@ -246,6 +247,9 @@ pub(crate) struct TreeV3 {
     pub(crate) spec: Value,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) obstacles: Vec<ObstacleV3>,
+    /// From version 7 on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) height_m: Option<f64>,
     #[serde(default)]
     pub(crate) skin: SkinV1,
     #[serde(default, skip_serializing_if = "Option::is_none")]

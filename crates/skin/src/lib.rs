@@ -48,6 +48,7 @@ mod parts;
 mod pictures;
 mod rings;
 mod shoots;
+mod simpler;
 mod sleeve;
 mod solid;
 mod spec;

@@ -2,7 +2,7 @@
 
 use burgeon::formats::{Packing, Room};
 use burgeon::skin::{FoliageStyle, SolidSpec};
-use burgeon::{Engine, EngineReport, LevelSpec};
+use burgeon::{Allowance, Engine, EngineReport, LevelSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
@@ -46,11 +46,11 @@ pub(crate) struct ExportArgs {
         value_parser = clap::value_parser!(u32).range(128..=4096))]
     pub(crate) impostor: Option<u32>,
     /// Largest number of triangles of the model, 100 or more: the model is the first level of detail within it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(100..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(Allowance::TRIANGLES.0..))]
     pub(crate) triangles: Option<u64>,
     /// Largest size in megabytes (of a million bytes) of the model's file with the files next to it: textures become
     /// smaller first, and then the model becomes the first level of detail that fits.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.001, 4000.0))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, Allowance::MEGABYTES.0, Allowance::MEGABYTES.1))]
     pub(crate) megabytes: Option<f64>,
     /// Height of the body for --for print, in millimetres, 10 to 2000 [default: 150].
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 10.0, 2000.0))]
@@ -123,9 +123,9 @@ impl ExportArgs {
         self.foliage.map_or_else(FoliageStyle::default, FoliageWord::foliage)
     }
 
-    /// Whether the size of the output is limited.
-    pub(crate) fn has_budget(&self) -> bool {
-        self.triangles.is_some() || self.megabytes.is_some()
+    /// Returns the limits to the size of the output.
+    pub(crate) fn allowance(&self) -> Allowance {
+        Allowance::new(self.triangles, self.megabytes)
     }
 
     /// Returns the levels for a file of this format in addition to the finest meshes. For a budget, levels are made
@@ -134,7 +134,7 @@ impl ExportArgs {
         if !matches!(format, Some(PlantFormat::Model(_))) {
             return LevelSpec::default();
         }
-        let lods = if self.has_budget() { MOST_LODS } else { self.lods };
+        let lods = self.allowance().levels(self.lods);
         LevelSpec { lods, copies: self.instances, impostor: self.impostor, assembly: self.assembly }
     }
 
@@ -182,16 +182,13 @@ impl ExportArgs {
         given.only_if(painted, &["foliage"], "models and pictures with textures", "none is made")?;
         let by_level = self.foliage == Some(FoliageWord::ByLevel);
         given.only_if(
-            !by_level || self.lods > 0 || self.has_budget(),
+            !by_level || self.lods > 0 || self.allowance().is_any(),
             &["foliage"],
             "coarser copies (--lods)",
             "none is made",
         )
     }
 }
-
-/// Largest number of levels of detail.
-const MOST_LODS: u32 = 6;
 
 /// Drawing of leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use burgeon::TreeSpec;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
+use burgeon::{TreeGoal, TreeSpec};
 use clap::{Args, ValueEnum};
 
 use super::export::TreeSurfaceArgs;
@@ -87,12 +87,12 @@ pub(crate) struct GrowthArgs {
     /// Grow the tree until it has this height, in metres, within what its species reaches: at the age that comes
     /// nearest, and scaled by the rest.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true, conflicts_with = "age",
-        value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
+        value_parser = |s: &str| ranged(s, TreeGoal::HEIGHTS_M.0, TreeGoal::HEIGHTS_M.1))]
     pub(crate) height: Option<f64>,
     /// Grow the tree until its stem has this diameter at breast height (1.3 m), in metres, within what its species reaches:
     /// at the age that comes nearest, and scaled by the rest.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true, conflicts_with_all = ["age", "height"],
-        value_parser = |s: &str| ranged(s, 0.001, 30.0))]
+        value_parser = |s: &str| ranged(s, TreeGoal::DIAMETERS_M.0, TreeGoal::DIAMETERS_M.1))]
     pub(crate) dbh: Option<f64>,
     /// The season of its leaves, -1 to 1: -1 bare, leaves unfold until 0, summer; 0.5 all in the colours of autumn, 1
     /// bare; not for evergreens [default: the preset's, mostly 0].

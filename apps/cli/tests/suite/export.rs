@@ -168,13 +168,19 @@ fn an_assembly_has_joints_for_its_wood_and_leaves_on_them() {
     let list = |name: &str| -> Vec<String> {
         let line = text.lines().find(|line| line.contains(&format!("{name} = ["))).unwrap();
         let inner = line.split_once('[').and_then(|(_, rest)| rest.split_once("= [")).unwrap().1;
-        inner.split(']').next().unwrap().split(", ").map(|n| n.trim_matches('"').to_owned()).collect()
+        inner.split(']').next().unwrap().split(',').map(|n| n.trim_matches('"').to_owned()).collect()
     };
     let (joints, bound) = (list("jointNames"), list("bindJoints"));
     assert!(joints.len() > 2 && joints.len() <= 120, "{joints:?}");
     let leaves = report["items"][0]["counts"]["leaves"].as_u64().unwrap();
     assert_eq!(bound.len() as u64, leaves, "each leaf is a copy");
     assert!(bound.iter().all(|name| joints.contains(name)) && bound.iter().any(|name| name != &joints[0]));
+    let textures: Vec<&str> = text.split('@').filter(|name| name.ends_with(".jpg")).collect();
+    assert!(textures.len() > 3 && !text.contains(".png@"), "{textures:?}");
+    for name in textures {
+        let bytes = fs::read(dir.join(name)).unwrap();
+        assert!(bytes.starts_with(&[0xff, 0xd8, 0xff]), "{name} is a JPEG");
+    }
     let wind: Value = serde_json::from_slice(&fs::read(dir.join("hazel-wind.json")).unwrap()).unwrap();
     let named: Vec<&str> =
         wind["Joints"].as_array().unwrap().iter().map(|j| j["JointName"].as_str().unwrap()).collect();

@@ -156,13 +156,41 @@ impl TreeEvaluator {
     ) -> Result<Option<Model>, TreeError> {
         let (report, obstacles) = self.shaped(spec, seed, options, run)?;
         self.begun = report;
+        Ok(self.look((spec, seed, options), &obstacles, run)?.map(|(model, _)| model))
+    }
+
+    /// Returns what [`Self::preview`] does for a program without hand edits ([`Self::update_unedited`]), with the coarser
+    /// plant and the places of its parts in the model.
+    ///
+    /// # Errors
+    /// [`TreeError`]: a fault of the spec, or cancelled.
+    pub fn preview_unedited(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<Option<LaidOut>, TreeError> {
+        let (report, obstacles) = self.grown_and_dressed(spec, seed, options, run)?;
+        self.begun = report;
+        self.look((spec, seed, options), &obstacles, run)
+    }
+
+    /// Makes the coarse model of a large tree that has just been grown.
+    fn look(
+        &self,
+        (spec, seed, options): (&TreeSpec, Seed, &TreeOptions),
+        obstacles: &growth::Obstacles,
+        run: &Run<'_>,
+    ) -> Result<Option<LaidOut>, TreeError> {
         let plant = self.plant().filter(|p| p.organs.len() + p.nodes.position.len() > SMALL);
         let Some(plant) = plant.filter(|_| self.done.contains(&"structure")) else { return Ok(None) };
         let fine = skin_spec(spec, seed, options);
         let (mut copy, skin) = coarser(plant, &fine, LOOK_LEVEL);
-        keep_out(&mut copy, (&skin, &fine), plant, LOOK_LEVEL, &obstacles);
+        keep_out(&mut copy, (&skin, &fine), plant, LOOK_LEVEL, obstacles);
         let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
-        Ok(Some(skinned(&copy, &from, run)?.0))
+        let (model, layout) = skinned(&copy, &from, run)?;
+        Ok(Some((model, (copy, layout))))
     }
 
     /// Computes everything but the meshes.

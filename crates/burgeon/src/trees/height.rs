@@ -34,6 +34,11 @@ pub enum HeightError {
         /// The most, metres.
         most_m: f64,
     },
+    /// It grows around obstacles, which it would meet when it is scaled.
+    #[error(
+        "a tree with obstacles has no height or diameter to grow to, as it would meet them: give its age"
+    )]
+    Obstacles,
     /// It cannot be grown.
     #[error(transparent)]
     Tree(#[from] TreeError),
@@ -45,6 +50,42 @@ fn grown_at(spec: &TreeSpec, seed: Seed, age: Option<u32>, run: &Run<'_>) -> Res
     aged.check(&run.budget)?;
     let blade = tree_blade(&aged.blade);
     Ok(growth::grow(&aged, Some(blade), seed, run, &mut Report::default())?)
+}
+
+/// Size that a tree shall have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TreeGoal {
+    /// A height, metres.
+    Height(f64),
+    /// A diameter at breast height (1.3 m), metres.
+    Dbh(f64),
+}
+
+impl TreeGoal {
+    /// Range of heights in requests, metres.
+    pub const HEIGHTS_M: (f64, f64) = (0.01, 1000.0);
+    /// Range of diameters in requests, metres.
+    pub const DIAMETERS_M: (f64, f64) = (0.001, 30.0);
+}
+
+/// Sets the age at which a tree is nearest to a size; returns the height to which it is then scaled
+/// ([`super::TreeOptions::height_m`]).
+///
+/// # Errors
+/// [`HeightError`].
+pub fn aim_at(spec: &mut TreeSpec, seed: Seed, goal: TreeGoal, run: &Run<'_>) -> Result<f64, HeightError> {
+    if !spec.obstacles.is_empty() {
+        return Err(HeightError::Obstacles);
+    }
+    let (age, height_m) = match goal {
+        TreeGoal::Height(height_m) => (age_of_height(spec, seed, height_m, run)?, height_m),
+        TreeGoal::Dbh(dbh_m) => {
+            let found = tree_of_dbh(spec, seed, dbh_m, run)?;
+            (found.age, found.height_m)
+        }
+    };
+    spec.age = age;
+    Ok(height_m)
 }
 
 /// A tree that has a diameter.

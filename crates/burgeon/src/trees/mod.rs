@@ -44,7 +44,7 @@ pub use compare::{
 pub use evaluate::TreeEvaluator;
 pub(crate) use evaluate::{grow_plant, mesh_plant};
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
-pub use height::{HeightError, TreeOfDbh, age_of_height, tree_of_dbh};
+pub use height::{HeightError, TreeGoal, TreeOfDbh, age_of_height, aim_at, tree_of_dbh};
 pub use presets::{PRESETS, Preset};
 pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan, make_tree_of_plot};
 pub use scenery::show_obstacles;

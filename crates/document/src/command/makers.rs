@@ -84,10 +84,11 @@ impl TreeCommand {
         match self {
             Self::SetSpec(preset, spec) => {
                 spec::check(&*spec).map_err(spec::SpecFault::from)?;
-                (tree.preset, tree.spec) = (preset.map(|p| shortened(&p)), spec);
+                tree.preset = preset.map(|p| shortened(&p));
+                tree.set_spec(spec);
             }
             Self::SetField(path, value) => {
-                tree.spec = Arc::new(spec::set(&*tree.spec, &path, value)?);
+                tree.set_spec(Arc::new(spec::set(&*tree.spec, &path, value)?));
             }
             Self::AddObstacle(new) => tree.obstacles.push(named(new)),
             Self::SetObstacle(row, new) => *tree.obstacles.get_mut(row).ok_or(gone)? = named(new),

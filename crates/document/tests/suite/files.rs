@@ -129,6 +129,7 @@ fn refusals_say_what_and_what_to_do() {
             "sides must be 3 to 64, not 1",
         ),
         (scene(r#"{"tree":{"spec":[]}}"#, ""), "JSON object"),
+        (scene(r#"{"tree":{"spec":{},"height_m":-2}}"#, ""), "height_m must be 0.001 to 1000 m, not -2"),
         (scene(r#"{"tree":{"spec":{},"leaf":0}}"#, ""), "bears the leaf"),
         (scene(r#"{"tree":{"spec":{},"leaf":7}}"#, ""), "bears the leaf"),
         (scene(r#"{"tree":{"spec":{}}}"#, r#","edits":[]"#), "unknown field `edits`"),
@@ -285,7 +286,7 @@ fn a_tree_a_leaf_and_a_flower_come_back() {
         r#"{{"name":"three","plants":[
         {{"name":"leaf","seed":2,"maker":{{"leaf":{{"file":"m.csv","data":"row,mark\n","settings":{{"curl":0.1}}}}}}}},
         {{"name":"tree","seed":3,"locked":true,"position":[1,0,-0.1],"yaw_deg":30.1,"scale":0.3,"maker":{{"tree":{{
-            "preset":"oak","spec":{{"age":3,"clearance_m":0.1}},"leaf":0,
+            "preset":"oak","spec":{{"age":3,"clearance_m":0.1}},"leaf":0,"height_m":4.5,
             "obstacles":[{{"name":"ball","shape":{{"shape":"sphere","centre":[0,1,0],"radius_m":0.5}}}}]}}}}}},
         {{"name":"flower","seed":4,"hidden":true,"maker":{{"flower":{{"settings":{{"species":"rose","day":2.5,"stalk_m":0.4}},"law":{law}}}}}}}
         ]}}"#
@@ -297,6 +298,7 @@ fn a_tree_a_leaf_and_a_flower_come_back() {
     );
     let Maker::Tree(t) = &tree.settings().maker else { panic!("{tree:?}") };
     assert_eq!((t.obstacles.len(), t.leaf, tree.settings().locked), (1, Some(leaf.id()), true));
+    assert_eq!(t.height_m, Some(4.5));
     let Maker::Flower(f) = &flower.settings().maker else { panic!("{flower:?}") };
     let rose = bloom::preset("rose").unwrap();
     assert!(f.law.is_some() && f.preset.as_deref() == Some("rose") && flower.settings().hidden);

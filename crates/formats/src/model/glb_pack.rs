@@ -141,7 +141,7 @@ fn jpeg_or_webp(texture: &Arc<mesh::Texture>, cache: &mut PngCache) -> Result<En
 }
 
 /// Encodes a texture as JPEG; `None` if it has holes or is too large for the format.
-fn jpeg(texture: &mesh::Texture) -> Result<Option<Encoded>, WriteError> {
+pub(super) fn jpeg(texture: &mesh::Texture) -> Result<Option<Encoded>, WriteError> {
     let sides = (u16::try_from(texture.width), u16::try_from(texture.height));
     let (Ok(width), Ok(height)) = sides else { return Ok(None) };
     if texture.pixels.chunks_exact(4).any(|p| p[3] != 255) {

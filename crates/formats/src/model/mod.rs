@@ -371,7 +371,7 @@ pub(crate) fn share(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
-/// Texture files next to a model, `STEM-MATERIAL.png`, each once.
+/// Texture files next to a model, `STEM-MATERIAL.png`, each once; where they are to be light, `.jpg` if they have no holes.
 pub(crate) struct TextureFiles<'a> {
     stem: &'a str,
     /// Name and bytes.
@@ -379,11 +379,17 @@ pub(crate) struct TextureFiles<'a> {
     /// The texture of each file.
     written: Vec<Arc<mesh::Texture>>,
     cache: PngCache,
+    is_light: bool,
 }
 
 impl<'a> TextureFiles<'a> {
     pub(crate) fn new(stem: &'a str) -> Self {
-        Self { stem, files: Vec::new(), written: Vec::new(), cache: PngCache::new() }
+        Self { stem, files: Vec::new(), written: Vec::new(), cache: PngCache::new(), is_light: false }
+    }
+
+    /// Makes those of a light file, for programs that read JPEG.
+    pub(crate) fn light(stem: &'a str) -> Self {
+        Self { is_light: true, ..Self::new(stem) }
     }
 
     /// Returns the name of the file that holds a texture; `material` is the first that uses it.
@@ -396,12 +402,18 @@ impl<'a> TextureFiles<'a> {
         if let Some(known) = known {
             return Ok(self.files[known].0.clone());
         }
-        let mut name = format!("{}-{}.png", self.stem, file_name(material, "texture"));
+        let jpeg = if self.is_light { glb_pack::jpeg(texture)? } else { None };
+        let ending = if jpeg.is_some() { "jpg" } else { "png" };
+        let mut name = format!("{}-{}.{ending}", self.stem, file_name(material, "texture"));
         // On some disks, two names that differ only in case are the same file.
         while self.files.iter().any(|(n, _)| n.to_lowercase() == name.to_lowercase()) {
             name.insert_str(name.len() - 4, "-2");
         }
-        self.files.push((name.clone(), self.cache.png(texture)?.to_vec()));
+        let bytes = match jpeg {
+            Some((bytes, _)) => bytes,
+            None => self.cache.png(texture)?,
+        };
+        self.files.push((name.clone(), bytes.to_vec()));
         self.written.push(Arc::clone(texture));
         Ok(name)
     }

@@ -119,7 +119,7 @@ pub fn assembly_files(assembly: &Assembly, stem: &str, spec: &ExportSpec) -> Res
         out: Vec::new(),
         taken: Identifiers::default(),
     };
-    let mut textures = TextureFiles::new(&stem);
+    let mut textures = TextureFiles::light(&stem);
     writer.all(&mut textures)?;
     let mut files = ModelFiles::new(writer.out, textures.into_files());
     let wind = BesideFile { what: Beside::Wind, name: format!("{stem}-wind.json"), bytes: wind(assembly)? };
@@ -180,7 +180,7 @@ struct Writer<'a> {
 /// Names of a list, in quotes.
 fn tokens(names: impl IntoIterator<Item = String>) -> String {
     let quoted: Vec<String> = names.into_iter().map(|name| format!("\"{name}\"")).collect();
-    format!("[{}]", quoted.join(", "))
+    format!("[{}]", quoted.join(","))
 }
 
 impl Writer<'_> {
