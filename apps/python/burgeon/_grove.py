@@ -219,6 +219,10 @@ class Grove:
         """Renders a picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
+    def albedo(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
+        """Returns the colour of its surfaces without light: see ``Model.albedo``."""
+        return self.model.albedo(size, **how)
+
     def masks(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> GroveMasks:
         """Returns the labels of each pixel of ``render(size, **how)`` at its centre: part, axis, organ, depth, and tree."""
         import numpy as np

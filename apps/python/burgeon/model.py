@@ -468,6 +468,11 @@ class Model:
         """
         return array(self._raw.render(look(size, **how)))
 
+    def albedo(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
+        """Returns the colour of the surfaces in ``render(size, **how)`` without light: (height, width, 4) uint8, sRGB, and as
+        alpha the share of the pixel that surfaces cover."""
+        return array(self._raw.albedo(look(size, **how)))
+
     def to_png(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> bytes:
         """Renders the same as a PNG file."""
         pixels = self.render(size, **how)

@@ -559,6 +559,10 @@ class Plant:
         """Renders a picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
+    def albedo(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
+        """Returns the colour of its surfaces without light: see ``Model.albedo``."""
+        return self.model.albedo(size, **how)
+
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()
 

@@ -18,6 +18,7 @@
 //! | `impostor` | [`impostor()`]: views from all sides in one picture |
 //! | `shade` | colour of a fragment and of the background |
 
+mod albedo;
 mod camera;
 mod hits;
 mod impostor;
@@ -29,6 +30,7 @@ mod shade;
 mod spec;
 mod texture;
 
+pub use albedo::albedo;
 pub use camera::Camera;
 pub use hits::{Hit, hits};
 pub use impostor::impostor;
