@@ -29,6 +29,8 @@ from ._workers import results
 __all__ = ["FORMATS", "export", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
+CLOUD = ("points", "stations", "elevation", "noise", "seed", "beam", "pulse", "path")
+"""Arguments of clouds."""
 MAKERS = ("grow", "bloom", "leaf", "grove", "scene")
 """Makers of plants; a plant of ``grove`` is a tile of trees, one of ``scene`` a few plants on soil or in pots."""
 FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture", "labels")
@@ -157,7 +159,7 @@ def _recipe(
         raise TypeError(f"formats must be words, not {formats!r}")
     fields, vary = table("fields", fields), table("vary", vary)
     cloud, picture = table("cloud", cloud), table("picture", picture)
-    keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
+    keys("cloud", cloud, CLOUD)
     keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
     known = GROVES if maker in ("grove", "scene") else FORMATS
     unknown = [f for f in formats if f not in known]
