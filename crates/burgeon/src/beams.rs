@@ -231,8 +231,15 @@ fn measure(
 /// of them have, the nearer one of two.
 fn echo(group: &[Hit], beam: &Beam, label: &impl Fn(&Hit) -> Option<(Label, i32)>) -> Option<Echo> {
     let mut labels: Vec<((Label, i32), usize, &Hit)> = Vec::new();
+    // Rays of a beam that meet one triangle share its label: to look it up takes longest.
+    let mut known: Vec<((u32, u32), (Label, i32))> = Vec::new();
     for hit in group {
-        let own = label(hit)?;
+        let triangle = (hit.part, hit.triangle);
+        let own = match known.iter().find(|(own, _)| *own == triangle) {
+            Some((_, label)) => *label,
+            None => label(hit)?,
+        };
+        known.push((triangle, own));
         match labels.iter_mut().find(|(known, ..)| *known == own) {
             Some((_, count, _)) => *count += 1,
             None => labels.push((own, 1, hit)),
