@@ -12,7 +12,7 @@ HOLDS = {
     "laz": "the same as LAZ",
     "drawing": "what a person would have drawn (SVG)",
     "picture": "a picture with masks of part, axis and organ, and its depth",
-    "labels": "pictures by calibrated cameras with masks, instances, keypoints, depth and normals",
+    "labels": "pictures by calibrated cameras with masks, instances, keypoints, depth, normals and albedo",
 }
 """Description of each format."""
 

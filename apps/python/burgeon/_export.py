@@ -22,7 +22,7 @@ from .plant import PARTS
 if TYPE_CHECKING:
     import numpy as np
 
-KINDS = ("coco", "panoptic", "keypoints", "yolo", "depth", "normals", "semantic", "instance", "cloud")
+KINDS = ("coco", "panoptic", "keypoints", "yolo", "depth", "normals", "albedo", "semantic", "instance", "cloud")
 """The kinds of labels."""
 SPLITS = ("train", "val")
 """Folders of pictures: for training, and held out for validation."""
@@ -117,8 +117,13 @@ class _Folder:
                 share = random.Random(f"{plant['seed']}:held out").random()
                 split = SPLITS[1] if share < held_out else SPLITS[0]
                 if self.kinds - {"cloud"}:
-                    for name, shot, image in shots(plant):
+                    for name, shot, image, albedo in shots(plant):
                         self.picture(split, name, shot, image)
+                        if "albedo" in self.kinds:
+                            if not albedo:
+                                line = f"{out} was made by a Burgeon without albedo: generate it again, or leave 'albedo' out"
+                                raise wrong(line, "kinds", "albedo", "what the data set has")
+                            self.put("albedo", split, f"{name}.png", data=albedo)
                 if "cloud" in self.kinds:
                     self.cloud(split, plant)
             self.finish(recipe)
@@ -210,8 +215,9 @@ class _Folder:
         self.put("classes.csv", data=f"number,name\n{classes}".encode())
 
 
-def shots(plant: "Mapping[str, Any]") -> "Iterator[Tuple[str, labels.Shot, bytes]]":
-    """Returns the pictures of a plant from a data set: their names, themselves and their files."""
+def shots(plant: "Mapping[str, Any]") -> "Iterator[Tuple[str, labels.Shot, bytes, bytes]]":
+    """Returns the pictures of a plant from a data set: their names, themselves without pixels, and the files of picture and
+    albedo."""
     import numpy as np
 
     k = 0
@@ -222,6 +228,7 @@ def shots(plant: "Mapping[str, Any]") -> "Iterator[Tuple[str, labels.Shot, bytes
         found = regions(columns["instance"])
         shot = labels.Shot(
             image=np.empty((0, 0, 4), np.uint8),
+            albedo=np.empty((0, 0, 4), np.uint8),
             masks=masks,
             depth=columns["depth"],
             camera=Camera.of_dict(about["camera"]),
@@ -232,7 +239,7 @@ def shots(plant: "Mapping[str, Any]") -> "Iterator[Tuple[str, labels.Shot, bytes
             tree=columns["trees"],
             keypoints=columns["keypoints"],
         )
-        yield f"{plant['key']}-{k}", shot, plant[f"view{k}.png"]
+        yield f"{plant['key']}-{k}", shot, plant[f"view{k}.png"], plant.get(f"view{k}.albedo.png", b"")
         k += 1
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._light import Lighting
-    from .model import View
+    from .model import Path, View
 
 __all__ = ["Grove", "GroveCloud", "GroveMasks", "grove", "scene"]
 
@@ -43,9 +43,17 @@ class GroveCloud(NamedTuple):
     order: "np.ndarray"
     """(n,) int32: branching order of the axis, 0 for the trunk."""
     station: "np.ndarray"
-    """(n,) uint8: place of the scanner from which it was measured."""
+    """(n,) uint8: place of the scanner from which it was measured; on a path, the row of the point where its leg begins."""
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
+    share: "np.ndarray"
+    """(n,) float32: share of the echo that comes from this axis or organ; below 1 where a beam met several things at once."""
+    echo: "np.ndarray"
+    """(n,) uint8: number of the echo among those of its beam, from 0."""
+    echoes: "np.ndarray"
+    """(n,) uint8: number of echoes of its beam."""
+    time: "np.ndarray"
+    """(n,) float64: share of the path that lay behind the scanner, 0 to 1; 0 for one that stands."""
     tree: "np.ndarray"
     """(n,) int32: row of ``grove.places``; -1 on the ground."""
     instance: "np.ndarray"
@@ -187,13 +195,27 @@ class Grove:
     def cloud(
         self,
         points: int = 200_000,
-        stations: int = 4,
-        elevation: float = 5.0,
+        stations: "Optional[int]" = None,
+        elevation: "Optional[float]" = None,
         noise: float = 0.0,
-        seed: "int | None" = None,
+        seed: "Optional[int]" = None,
+        *,
+        beam: float = 0.0,
+        pulse: "Optional[float]" = None,
+        path: "Optional[Path]" = None,
     ) -> GroveCloud:
-        """Scans the grove from around it: trees hide one another. See ``Plant.cloud``."""
-        columns = seen(self, points, stations, elevation, noise, seed)
+        """Scans the grove from around it, or along a path: trees hide one another. See ``Plant.cloud``."""
+        columns = seen(
+            self,
+            points=points,
+            stations=stations,
+            elevation=elevation,
+            noise=noise,
+            seed=seed,
+            beam=beam,
+            pulse=pulse,
+            path=path,
+        )
         return GroveCloud(**columns, instance=self._instance(columns["tree"], columns["axis"], columns["organ"]))
 
     def _instance(self, tree: "np.ndarray", axis: "np.ndarray", organ: "np.ndarray") -> "np.ndarray":
@@ -218,6 +240,10 @@ class Grove:
     def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
         """Renders a picture: see ``Model.render``."""
         return self.model.render(size, **how)
+
+    def albedo(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
+        """Returns the colour of its surfaces without light: see ``Model.albedo``."""
+        return self.model.albedo(size, **how)
 
     def masks(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> GroveMasks:
         """Returns the labels of each pixel of ``render(size, **how)`` at its centre: part, axis, organ, depth, and tree."""

@@ -10,12 +10,13 @@ if TYPE_CHECKING:
 
 GRID_M = 0.0001
 """Step of coordinates, metres."""
-LABELS = ("part", "axis", "organ", "order", "distance", "tree", "instance")
+LABELS = ("part", "axis", "organ", "order", "distance", "tree", "instance", "share")
 """Columns that become separate dimensions."""
 
 
 def las(cloud: "Mapping[str, np.ndarray]", packed: bool) -> bytes:
-    """Returns LAS 1.4, point format 6, metres, +z up; the station is the point source. The same cloud gives the same bytes."""
+    """Returns LAS 1.4, point format 6, metres, +z up; the station is the point source, the share of the path the GPS time. The
+    same cloud gives the same bytes."""
     import datetime
 
     import numpy as np
@@ -38,6 +39,10 @@ def las(cloud: "Mapping[str, np.ndarray]", packed: bool) -> bytes:
     file = laspy.LasData(header)
     file.x, file.y, file.z = placed.T
     file.point_source_id = cloud["station"].astype(np.uint16)
+    # The format has room for fifteen echoes of a beam.
+    file.return_number = np.minimum(cloud["echo"], 14) + 1
+    file.number_of_returns = np.minimum(cloud["echoes"], 15)
+    file.gps_time = cloud["time"]
     for name in LABELS:
         if name in cloud:
             file[name] = cloud[name]

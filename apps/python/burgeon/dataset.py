@@ -29,12 +29,14 @@ from ._workers import results
 __all__ = ["FORMATS", "export", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
+CLOUD = ("points", "stations", "elevation", "noise", "seed", "beam", "pulse", "path")
+"""Arguments of clouds."""
 MAKERS = ("grow", "bloom", "leaf", "grove", "scene")
 """Makers of plants; a plant of ``grove`` is a tile of trees, one of ``scene`` a few plants on soil or in pots."""
 FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture", "labels")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), line drawing
 (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``), pictures by calibrated cameras with all labels
-(``.view0.png``, ``.view0.npz``, ``.view0.json``; docs/datasets.md)."""
+(``.view0.png``, ``.view0.albedo.png``, ``.view0.npz``, ``.view0.json``; docs/datasets.md)."""
 
 
 GROVES = ("glb", "cloud", "laz", "picture", "labels")
@@ -157,7 +159,7 @@ def _recipe(
         raise TypeError(f"formats must be words, not {formats!r}")
     fields, vary = table("fields", fields), table("vary", vary)
     cloud, picture = table("cloud", cloud), table("picture", picture)
-    keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
+    keys("cloud", cloud, CLOUD)
     keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
     known = GROVES if maker in ("grove", "scene") else FORMATS
     unknown = [f for f in formats if f not in known]
@@ -402,9 +404,10 @@ def _labelled(plant: Any, views: "Mapping[str, Any]", seed: int) -> "List[Tuple[
         columns.update(depth=shot.depth, normal=masks.normal.astype(np.float16))
         seen = {"instances": shot.instances, "parts": shot.part, "trees": shot.tree, "keypoints": shot.keypoints}
         about = {"camera": camera.to_dict(), "keypoints": list(labels.KEYPOINTS), "light": how}
-        image = bytes(_burgeon.png(camera.width, camera.height, shot.image.tobytes()))
         stem = f"view{k}"
-        files += [(f"{stem}.png", image), (f"{stem}.npz", npz({**columns, **seen})), (f"{stem}.json", _json(about))]
+        for ending, pixels in (("png", shot.image), ("albedo.png", shot.albedo)):
+            files.append((f"{stem}.{ending}", bytes(_burgeon.png(camera.width, camera.height, pixels.tobytes()))))
+        files += [(f"{stem}.npz", npz({**columns, **seen})), (f"{stem}.json", _json(about))]
     return files
 
 
@@ -441,9 +444,9 @@ def export(
     """Writes the labels of a data set (format ``labels``) in the formats of other programs, into a new folder; returns counts.
 
     ``kinds``: ``coco`` (instances as run lengths), ``panoptic``, ``keypoints``, ``yolo`` (outlines as polygons, or boxes without
-    ``segments``), ``depth``, ``normals``, ``semantic``, ``instance``, ``cloud``; ``held_out``: the share of plants, 0 to 0.9, of
-    which all pictures go to ``val`` and not to ``train``; ``least_pixels``: smaller instances are left out. The folder is written
-    completely or not at all.
+    ``segments``), ``depth``, ``normals``, ``albedo``, ``semantic``, ``instance``, ``cloud``; ``held_out``: the share of plants,
+    0 to 0.9, of which all pictures go to ``val`` and not to ``train``; ``least_pixels``: smaller instances are left out. The
+    folder is written completely or not at all.
     """
     from ._export import export as exported
 

@@ -1,4 +1,4 @@
-"""Pictures with all labels for training: masks, boxes, outlines, points, depth and normals, organ by organ.
+"""Pictures with all labels for training: masks, boxes, outlines, points, depth, normals and albedo, organ by organ.
 
 >>> import burgeon as bg
 >>> rose = bg.bloom("rose", seed=2)
@@ -152,6 +152,9 @@ class Shot(NamedTuple):
     """Labels of each pixel: see ``Plant.masks``."""
     depth: "np.ndarray"
     """(height, width) float32: metres along the view, as depth cameras give them; infinite for nothing."""
+    albedo: "np.ndarray"
+    """(height, width, 4) uint8: colour of the surfaces without light, sRGB, and as alpha the share of the pixel that they
+    cover."""
     camera: Camera
     """The camera of the picture."""
     instances: "np.ndarray"
@@ -200,6 +203,7 @@ def take(
         image=image,
         masks=masks,
         depth=camera.depth_along_view(masks.depth),
+        albedo=what.albedo(camera=camera, **how),
         camera=camera,
         instances=found.number,
         area=found.area,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import os
-from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import _burgeon
 from ._files import write_whole
 from ._given import axes as check_axes
-from ._given import flag, keys, number, unused, whole, word, wrong
+from ._given import beyond, flag, keys, number, unused, whole, word, wrong
 from ._recipe import Recipe
 
 if TYPE_CHECKING:
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from typing_extensions import Literal, TypedDict, Unpack
 
     from .camera import Camera
+
+    Path = Union[Sequence[Sequence[float]], np.ndarray]
 
     class View(TypedDict, total=False):
         """Settings of a picture."""
@@ -148,9 +150,17 @@ class Cloud(NamedTuple):
     order: "np.ndarray"
     """(n,) int32: branching order of the axis, 0 for the trunk."""
     station: "np.ndarray"
-    """(n,) uint8: place of the scanner from which it was measured."""
+    """(n,) uint8: place of the scanner from which it was measured; on a path, the row of the point where its leg begins."""
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
+    share: "np.ndarray"
+    """(n,) float32: share of the echo that comes from this axis or organ; below 1 where a beam met several things at once."""
+    echo: "np.ndarray"
+    """(n,) uint8: number of the echo among those of its beam, from 0."""
+    echoes: "np.ndarray"
+    """(n,) uint8: number of echoes of its beam."""
+    time: "np.ndarray"
+    """(n,) float64: share of the path that lay behind the scanner, 0 to 1; 0 for one that stands."""
     instance: "np.ndarray"
     """(n,) int32: the axis or organ by its number, the same as in pictures (``burgeon.labels``); 0 for none."""
 
@@ -185,17 +195,51 @@ def cloud_bytes(columns: "Dict[str, np.ndarray]", extension: str) -> bytes:
     raise wrong(line, "path", f".{extension}", ".npz, .las or .laz")
 
 
-def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":
-    """Returns the columns of the cloud of a plant or of a forest."""
-    scan = {
-        "points": whole("points", points, 1, 5_000_000),
-        "stations": whole("stations", stations, 1, 64),
-        "elevation": number("elevation", elevation, -80, 80, "deg"),
-        "noise": number("noise", noise, 0, 1, "m"),
-        "seed": of.seed if seed is None else whole("seed", seed, 0, 2**64 - 1),
-    }
-    columns = of._raw.survey(scan)
+USUAL_SCAN = {"stations": 4, "elevation": 5.0, "pulse": 0.25}
+"""What a scan takes where nothing is given and something else may make it needless."""
+
+
+def seen(of: Any, **given: Any) -> "Dict[str, np.ndarray]":
+    """Returns the columns of the cloud of a plant or of a forest; ``given``: the arguments of ``Plant.cloud``."""
+    scan = {name: USUAL_SCAN.get(name) if value is None else value for name, value in given.items()}
+    beam = number("beam", scan["beam"], 0, 50, "mrad")
+    for name in ("stations", "elevation"):
+        if scan["path"] is not None and given[name] is not None:
+            raise unused(name, given[name], "is of a scanner that stands, and a path is given")
+    if given["pulse"] is not None and not beam:
+        raise unused("pulse", given["pulse"], "is of beams of a width: give beam, in milliradians")
+    columns = of._raw.survey(
+        {
+            "points": whole("points", scan["points"], 1, 5_000_000),
+            "stations": whole("stations", scan["stations"], 1, 64),
+            "elevation": number("elevation", scan["elevation"], -80, 80, "deg"),
+            "noise": number("noise", scan["noise"], 0, 1, "m"),
+            "beam": beam,
+            "pulse": number("pulse", scan["pulse"], 0, 5, "m"),
+            "path": [] if scan["path"] is None else _path(scan["path"]),
+            "seed": of.seed if scan["seed"] is None else whole("seed", scan["seed"], 0, 2**64 - 1),
+        }
+    )
     return {name: array(column) for name, column in columns.items()}
+
+
+def _path(path: Any) -> "List[List[float]]":
+    """Returns the points of a path: two to 256 rows of x, y and z."""
+
+    def plain(value: Any) -> Any:
+        return value.tolist() if hasattr(value, "tolist") else value
+
+    rows = plain(path)
+    rows = [plain(row) for row in rows] if isinstance(rows, (list, tuple)) else None
+    if rows is None or not all(isinstance(row, (list, tuple)) and len(row) == 3 for row in rows):
+        raise TypeError(f"path must be points (x, y, z), not {path!r}")
+    if not 2 <= len(rows) <= MOST_LEGS + 1:
+        raise beyond("path", f"{len(rows)} points", f"2 to {MOST_LEGS + 1} points")
+    return [[number(f"path[{k}]", x, -1e5, 1e5, "m") for x in row] for k, row in enumerate(rows)]
+
+
+MOST_LEGS = 255
+"""Most legs of a path: their numbers are bytes."""
 
 
 def shown(raw: Any, labels: "Sequence[np.ndarray]", start: "np.ndarray", how: "Look") -> "Tuple[np.ndarray, ...]":
@@ -467,6 +511,11 @@ class Model:
         pixels are those of ``burgeon render``.
         """
         return array(self._raw.render(look(size, **how)))
+
+    def albedo(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
+        """Returns the colour of the surfaces in ``render(size, **how)`` without light: (height, width, 4) uint8, sRGB, and as
+        alpha the share of the pixel that surfaces cover."""
+        return array(self._raw.albedo(look(size, **how)))
 
     def to_png(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> bytes:
         """Renders the same as a PNG file."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._light import Lighting
-    from .model import View
+    from .model import Path, View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
 
@@ -369,18 +369,37 @@ class Plant:
     def cloud(
         self,
         points: int = 20_000,
-        stations: int = 4,
-        elevation: float = 5.0,
+        stations: "Optional[int]" = None,
+        elevation: "Optional[float]" = None,
         noise: float = 0.0,
         seed: "Optional[int]" = None,
+        *,
+        beam: float = 0.0,
+        pulse: "Optional[float]" = None,
+        path: "Optional[Path]" = None,
     ) -> Cloud:
         """Scans the plant: the first surface that a beam meets gives a point, surfaces behind it are hidden.
 
-        ``points``: 1 to 5 million; ``stations``: places of the scanner, evenly around the plant, 1 to 64; ``elevation``: their
-        angle above the horizon of its centre, degrees, -80 to 80; ``noise``: standard deviation of the distance, metres, 0 to 1;
-        ``seed``: that of the choice of points and of noise (the plant's).
+        ``points``: 1 to 5 million; ``stations``: places of the scanner, evenly around the plant, 1 to 64 (4); ``elevation``:
+        their angle above the horizon of its centre, degrees, -80 to 80 (5); ``noise``: standard deviation of the distance,
+        metres, 0 to 1 (0); ``seed``: that of the choice of points and of noise (the plant's).
+
+        ``beam``: divergence of a beam from edge to edge, milliradians, 0 to 50 (0, a line). A beam that an edge splits gives a
+        point between the surfaces, with the label of the one that fills more of it, and ``share`` below 1, if they are nearer
+        than ``pulse`` to one another, metres, 0 to 5 (0.25); else each gives an echo of its own. ``path``: 2 to 256 points
+        (x, y, z) along which the scanner moves at a constant speed, instead of stations: its mirror turns in planes across it.
         """
-        columns = seen(self, points, stations, elevation, noise, seed)
+        columns = seen(
+            self,
+            points=points,
+            stations=stations,
+            elevation=elevation,
+            noise=noise,
+            seed=seed,
+            beam=beam,
+            pulse=pulse,
+            path=path,
+        )
         return Cloud(**columns, instance=self._instance(columns["axis"], columns["organ"]))
 
     def _instance(self, axis: "np.ndarray", organ: "np.ndarray") -> "np.ndarray":
@@ -558,6 +577,10 @@ class Plant:
     def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
         """Renders a picture: see ``Model.render``."""
         return self.model.render(size, **how)
+
+    def albedo(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
+        """Returns the colour of its surfaces without light: see ``Model.albedo``."""
+        return self.model.albedo(size, **how)
 
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()

@@ -286,6 +286,15 @@ impl RawModel {
         Ok(Column::new(picture.pixels).shaped(&shape))
     }
 
+    /// Renders the colour of the surfaces without light: RGBA bytes, rows from the top.
+    fn albedo(&self, py: Python<'_>, look: Look) -> PyResult<Column> {
+        let spec = look.spec()?;
+        let drawn = compute(py, 1.0, |run| burgeon::render::albedo(self.get(), &spec, run))?;
+        let picture = drawn.map_err(|e| crate::fault::refused(py, &e))?;
+        let shape = [picture.height as usize, picture.width as usize, 4];
+        Ok(Column::new(picture.pixels).shaped(&shape))
+    }
+
     /// Returns for each pixel of a picture: part, triangle (-1 for nothing), distance (infinite for nothing), normal
     /// (0 for nothing).
     fn masks(&self, py: Python<'_>, look: Look) -> PyResult<(Column, Column, Column, Column)> {

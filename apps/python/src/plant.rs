@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use burgeon::document::{FlowerCommand, Maker, SketchCommand};
 use burgeon::formats::StructureFormat;
+use burgeon::glam::DVec3;
 use burgeon::mesh::Standing;
 use burgeon::plant::Organ;
 use burgeon::{DrawnLine, SceneError, Seed, Stood, SurveySpec, Surveyed};
@@ -45,10 +46,14 @@ pub(crate) fn cloud(py: Python<'_>, cloud: Surveyed) -> PyResult<Bound<'_, PyDic
     put("order", Column::new(cloud.order))?;
     put("station", Column::new(cloud.station))?;
     put("distance", Column::new(cloud.distance))?;
+    put("share", Column::new(cloud.share))?;
+    put("echo", Column::new(cloud.echo))?;
+    put("echoes", Column::new(cloud.echoes))?;
+    put("time", Column::new(cloud.time))?;
     Ok(dict)
 }
 
-/// Positions of a scanner around plants, as Python requests them.
+/// Positions and beams of a scanner, as Python requests them.
 #[derive(FromPyObject)]
 pub(crate) struct Scan {
     #[pyo3(item)]
@@ -60,13 +65,27 @@ pub(crate) struct Scan {
     #[pyo3(item)]
     noise: f64,
     #[pyo3(item)]
+    beam: f64,
+    #[pyo3(item)]
+    pulse: f64,
+    #[pyo3(item)]
+    path: Vec<[f64; 3]>,
+    #[pyo3(item)]
     seed: u64,
 }
 
 impl Scan {
     pub(crate) fn spec(&self) -> (SurveySpec, Seed) {
-        let Self { points, stations, elevation, noise, seed } = *self;
-        (SurveySpec { points, stations, elevation_deg: elevation, noise_m: noise }, Seed::new(seed))
+        let spec = SurveySpec {
+            points: self.points,
+            stations: self.stations,
+            elevation_deg: self.elevation,
+            noise_m: self.noise,
+            beam_mrad: self.beam,
+            pulse_m: self.pulse,
+            path: self.path.iter().copied().map(DVec3::from_array).collect(),
+        };
+        (spec, Seed::new(self.seed))
     }
 }
 

@@ -112,6 +112,43 @@ def test_what_is_hidden_is_not_seen(small):
     assert 0.04 < np.sqrt((off**2).mean()) < 0.06
 
 
+def test_beams_that_an_edge_splits_say_so_and_keep_a_label_of_what_they_met(small):
+    """Their points lie off the surface, which the points of lines show."""
+    line, wide = small.cloud(3000, seed=5), small.cloud(3000, seed=5, beam=4.0, pulse=0.5)
+    assert (line.share == 1).all() and (line.echoes == 1).all() and (line.time == 0).all()
+    mixed = wide.share < 1
+    assert 0.1 < mixed.mean() < 0.95 and (wide.share > 0).all() and (wide.echo < wide.echoes).all()
+    surface = small.cloud(30_000, seed=5).points
+
+    def away(points):
+        return np.median([np.sqrt(np.square(surface - p).sum(axis=1).min()) for p in points[::5]])
+
+    assert away(wide.points[mixed]) > 1.5 * away(wide.points[~mixed])
+    organs = wide.organ >= 0
+    assert (small.organs.part[wide.organ[organs]] == wide.part[organs]).all() and organs.any() and not organs.all()
+    assert (wide.instance == np.where(organs, wide.organ + 1 + len(small.axes), wide.axis + 1)).all()
+    # A short pulse tells more surfaces apart.
+    short = small.cloud(3000, seed=5, beam=4.0, pulse=0.02)
+    assert (short.share < 1).mean() < mixed.mean() and short.echoes.max() > wide.echoes.max()
+
+
+def test_a_scanner_moves_along_its_path(small):
+    low, high = small.model.vertices.min(0), small.model.vertices.max(0)
+    path = np.array([(low[0] - 1, 0.5, high[2] + 2), (high[0] + 1, 0.5, high[2] + 2), (high[0] + 1, 3, high[2] + 2)])
+    cloud = small.cloud(2000, path=path, noise=0.0)
+    legs = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    ends = np.concatenate([[0], np.cumsum(legs)]) / legs.sum()
+    at = np.stack([np.interp(cloud.time, ends, path[:, k]) for k in range(3)], axis=1)
+    assert (np.diff(cloud.time) >= 0).all() and set(cloud.station) == {0, 1}
+    np.testing.assert_allclose(np.linalg.norm(cloud.points - at, axis=1), cloud.distance, rtol=1e-5)
+    # Beams lie in planes across the path.
+    along = np.diff(path, axis=0)[cloud.station] / legs[cloud.station][:, None]
+    assert np.abs(((cloud.points - at) * along).sum(axis=1)).max() < 1e-5
+    assert (cloud.points == small.cloud(2000, path=path.tolist()).points).all()
+    grove = bg.Grove([small], {"position": [(0, 0, 0), (2, 0, 0)], "yaw_deg": [0, 90], "scale": [1, 1], "plant": [0, 0]})
+    assert set(grove.cloud(500, path=[(-5, 1, 4), (7, 1, 4)], beam=1.0).tree) == {0, 1}
+
+
 def test_clouds_are_saved_whole_and_alike(small, tmp_path):
     cloud = small.cloud(500)
     cloud.save(tmp_path / "a.npz")

@@ -51,7 +51,7 @@ def test_any_array_is_a_scan_or_is_refused(small, points):
 
 
 @CALM
-@given(any_of(["points", "stations", "elevation", "noise", "seed"]))
+@given(any_of(["points", "stations", "elevation", "noise", "seed", "beam", "pulse", "path"]))
 def test_any_scanner_sees_or_is_refused(small, how):
     cloud = told(lambda: small.cloud(**{"points": 50, **how}))
     assert cloud is None or np.isfinite(cloud.points).all()

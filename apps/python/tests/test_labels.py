@@ -116,6 +116,23 @@ def test_pictures_show_points_where_the_camera_projects_them(hazel, principal):
     assert ((normals * (np.array(camera.position) - world)).sum(axis=1) > -1e-6).all()
 
 
+def test_albedo_is_the_colour_of_materials_under_any_light(hazel):
+    camera = bg.Camera.around(hazel, azimuth=20, elevation=15, size=SIZE)
+    how = {"background": "#ff00ff", "supersample": 1}
+    noon = labels.take(hazel, camera, sun=(180, 70), **how)
+    evening = labels.take(hazel, camera, sun=(80, 5), sunshine=0.2, **how)
+    assert (noon.albedo == evening.albedo).all() and not (noon.image == evening.image).all()
+    there = noon.masks.part >= 0
+    assert (noon.albedo[:, :, 3] == np.where(there, 255, 0)).all() and (noon.albedo[~there] == 0).all()
+    # Without textures, wood has the base colour of one of its materials.
+    parts = zip(hazel.model.parts, hazel.labels())
+    linear = np.array([part.material["base_color"][:3] for part, own in parts if (own[:, 2] < 0).any() and not len(part.colors)])
+    known = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055) * 255
+    wood = noon.albedo[there & (noon.masks.organ < 0)][:, :3].astype(float)
+    off = np.abs(wood[:, None] - known).max(axis=2).min(axis=1)
+    assert len(wood) > 20 and off.max() < 1, off
+
+
 def test_all_of_a_plant_is_seen_by_a_camera_around_it(hazel):
     for azimuth, elevation, size in [(0, 0, (64, 200)), (123, 60, (200, 64)), (250, -20, 100)]:
         camera = bg.Camera.around(hazel, azimuth, elevation, size, field_of_view=50)
@@ -373,7 +390,7 @@ def test_exported_masks_are_decoded_by_pycocotools_to_the_pixel(made, tmp_path):
     from pycocotools.coco import COCO
 
     out = made[0]
-    kinds = ("coco", "panoptic", "keypoints", "yolo", "depth", "normals", "semantic", "instance", "cloud")
+    kinds = ("coco", "panoptic", "keypoints", "yolo", "depth", "normals", "albedo", "semantic", "instance", "cloud")
     told = dataset.export(out, tmp_path / "all", kinds, held_out=0.4, least_pixels=3)
     assert told["pictures"] == 8 and told["clouds"] == 4
     held = {f"{p['key']}-{k}.png": p[f"view{k}"] for p in dataset.read(out) for k in (0, 1)}
@@ -404,12 +421,16 @@ def test_exported_masks_are_decoded_by_pycocotools_to_the_pixel(made, tmp_path):
 def test_exported_pictures_of_numbers_are_read_by_pillow(made, tmp_path):
     image = pytest.importorskip("PIL.Image")
     out = made[0]
-    dataset.export(out, tmp_path / "all", ("semantic", "instance", "normals", "panoptic"), held_out=0, least_pixels=1)
+    dataset.export(out, tmp_path / "all", ("semantic", "instance", "normals", "albedo", "panoptic"), held_out=0, least_pixels=1)
     for plant in dataset.read(out):
         arrays, name = plant["view0"], f"{plant['key']}-0.png"
         read = {
-            kind: np.asarray(image.open(tmp_path / "all" / kind / "train" / name)) for kind in ("semantic", "instance", "normals")
+            kind: np.asarray(image.open(tmp_path / "all" / kind / "train" / name))
+            for kind in ("semantic", "instance", "normals", "albedo")
         }
+        camera = bg.Camera.of_dict(json.loads(plant["view0.json"])["camera"])
+        again = bg.grow("hazel", seed=plant["seed"], **made[1]["fields"])
+        assert (read["albedo"] == again.albedo(camera=camera, supersample=1)).all()
         assert (read["semantic"] == arrays["part"] + 1).all()
         assert (read["instance"].astype(int) @ [1, 256, 65536] == arrays["instance"]).all()
         segments = np.asarray(image.open(tmp_path / "all" / "annotations" / "panoptic_train" / name)).astype(int) @ [

@@ -12,6 +12,7 @@ position: np.ndarray = oak.nodes.position
 picture: np.ndarray = oak.render((64, 64), view="orbit", azimuth=40.0, elevation=10, shadow=False)
 masks: bg.Masks = oak.masks(64, view="front")
 cloud: bg.Cloud = oak.cloud(1000, noise=0.002)
+mobile: bg.Cloud = oak.cloud(1000, beam=0.5, pulse=0.1, path=[(5, 2, -5), (5, 2, 5)])
 png: bytes = oak.model.to_png((64, 64), background="white")
 grove: bg.Grove = bg.grove({"oak": 3, "birch": 1}, area=(30, 30))
 trees: np.ndarray = grove.masks(64).tree

@@ -19,6 +19,7 @@
 
 mod assembly;
 mod balls;
+mod beams;
 mod checks;
 mod days;
 mod drawn;

@@ -10,27 +10,47 @@ use render::{Hit, PictureSpec, View};
 use skin::{Layout, Owner};
 use spec::RangeFault;
 
+use crate::beams::{Echo, echoes};
 use crate::parts::{NOTHING, part_of_axis, part_of_organ};
 use crate::site::SceneSite;
 
 /// Settings for scanning a plant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SurveySpec {
     /// Number of points, 1 to 5 million. Fewer are returned only where the beams meet the plant less often.
     pub points: u32,
-    /// Number of places of the scanner, evenly around the plant, 1 to 64.
+    /// Number of places of the scanner, evenly around the plant, 1 to 64. Not read with a path.
     pub stations: u32,
-    /// Elevation of the scanner above the horizon of the plant's middle, degrees, -80 to 80.
+    /// Elevation of the scanner above the horizon of the plant's middle, degrees, -80 to 80. Not read with a path.
     pub elevation_deg: f64,
     /// Standard deviation of the distance along each beam, metres, 0 to 1.
     pub noise_m: f64,
+    /// Divergence of a beam, from edge to edge, milliradians, 0 to 50. A beam of 0 is a line.
+    pub beam_mrad: f64,
+    /// Surfaces of one beam nearer to one another than this give one echo between them, metres, 0 to 5. Not read for
+    /// beams of 0.
+    pub pulse_m: f64,
+    /// The way of a scanner on the move, metres: none for one that stands, or 2 to 256 points. It moves at a constant
+    /// speed, and its mirror turns in planes across its way.
+    pub path: Vec<DVec3>,
 }
 
 impl Default for SurveySpec {
     fn default() -> Self {
-        Self { points: 20_000, stations: 4, elevation_deg: 5.0, noise_m: 0.0 }
+        Self {
+            points: 20_000,
+            stations: 4,
+            elevation_deg: 5.0,
+            noise_m: 0.0,
+            beam_mrad: 0.0,
+            pulse_m: 0.25,
+            path: Vec::new(),
+        }
     }
 }
+
+/// Farthest that a point of a path may be from the origin, metres: beyond, single precision of meshes is coarse.
+const FARTHEST_M: f64 = 1e5;
 
 impl SurveySpec {
     fn check(&self) -> Result<(), RangeFault> {
@@ -39,16 +59,40 @@ impl SurveySpec {
             ("stations", f64::from(self.stations), [1.0, 64.0], ""),
             ("elevation_deg", self.elevation_deg, [-80.0, 80.0], "deg"),
             ("noise_m", self.noise_m, [0.0, 1.0], "m"),
+            ("beam_mrad", self.beam_mrad, [0.0, 50.0], "mrad"),
+            ("pulse_m", self.pulse_m, [0.0, 5.0], "m"),
+            ("length of path", self.path.len() as f64, self.path_bounds(), "points"),
         ];
-        let out = fields.into_iter().find(|(_, value, [least, most], _)| !(*least..=*most).contains(value));
-        out.map_or(Ok(()), |(path, value, [least, most], unit)| {
+        let out = |(_, value, [least, most], _): &(_, f64, [f64; 2], _)| !(*least..=*most).contains(value);
+        let fault = |(path, value, [least, most], unit): (String, f64, [f64; 2], &'static str)| {
             let (least, most, above) = (Some(least), Some(most), None);
-            Err(RangeFault { path: path.into(), value, least, most, above, unit })
-        })
+            Err(RangeFault { path, value, least, most, above, unit })
+        };
+        if let Some((path, value, bounds, unit)) = fields.into_iter().find(out) {
+            return fault((path.into(), value, bounds, unit));
+        }
+        let places = self.path.iter().enumerate().flat_map(|(row, p)| {
+            let place =
+                move |(k, value)| (format!("path[{row}][{k}]"), value, [-FARTHEST_M, FARTHEST_M], "m");
+            p.to_array().into_iter().enumerate().map(place)
+        });
+        places
+            .into_iter()
+            .find(|(_, value, [least, most], _)| !(*least..=*most).contains(value))
+            .map_or(Ok(()), fault)
+    }
+
+    fn path_bounds(&self) -> [f64; 2] {
+        if self.path.is_empty() { [0.0, 0.0] } else { [2.0, 256.0] }
+    }
+
+    /// Whether each beam is followed by itself, not as a pixel of a picture.
+    fn is_traced(&self) -> bool {
+        self.beam_mrad > 0.0 || !self.path.is_empty()
     }
 
     /// Returns the views of all stations with `pixels` by `pixels` beams.
-    fn views(&self, pixels: u32) -> Vec<PictureSpec> {
+    pub(crate) fn views(&self, pixels: u32) -> Vec<PictureSpec> {
         let turn = base::ops::TAU / f64::from(self.stations);
         let view =
             |k: u32| View::Orbit { azimuth: turn * f64::from(k), elevation: self.elevation_deg.to_radians() };
@@ -69,12 +113,24 @@ pub enum SurveyError {
     /// A number is out of its range.
     #[error(transparent)]
     Range(#[from] RangeFault),
+    /// No plane across the path meets the plant.
+    #[error("no plane across the path meets the plant: lead the path past it")]
+    PathPasses,
+    /// A point of the path lies in wood.
+    #[error("{path} lies in the wood of the plant: lead the path around it")]
+    InWood {
+        /// The point, by its name.
+        path: String,
+    },
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-base::coded!(SurveyError {} wraps {
+base::coded!(SurveyError {
+    Self::PathPasses => "survey-path-passes" {},
+    Self::InWood { path } => "survey-in-wood" { path },
+} wraps {
     Self::Range(e) => e, RangeFault;
     Self::Cancelled(e) => e, Cancelled;
 });
@@ -98,6 +154,35 @@ pub struct Surveyed {
     pub station: Vec<u8>,
     /// Distance from the scanner, metres, without noise.
     pub distance: Vec<f32>,
+    /// Share of the echo that comes from what the labels name: below 1 where a beam met several things at once.
+    pub share: Vec<f32>,
+    /// Number of the echo among those of its beam, from 0.
+    pub echo: Vec<u8>,
+    /// Number of echoes of its beam.
+    pub echoes: Vec<u8>,
+    /// Share of the path that lay behind the scanner, 0 to 1; 0 for one that stands.
+    pub time: Vec<f64>,
+}
+
+impl Surveyed {
+    /// Adds an echo, and its plant to `plants`.
+    fn push(&mut self, echo: &Echo, plants: &mut Vec<i32>) {
+        self.points.push(echo.at.to_array());
+        self.normals.push(echo.normal.as_vec3().to_array());
+        self.part.push(echo.label.part);
+        self.axis.push(echo.label.axis);
+        self.organ.push(echo.label.organ);
+        self.order.push(echo.label.order);
+        self.station.push(echo.station);
+        #[expect(clippy::cast_possible_truncation, reason = "a distance in a mesh of single precision")]
+        self.distance.push(echo.distance_m as f32);
+        #[expect(clippy::cast_possible_truncation, reason = "a share")]
+        self.share.push(echo.share as f32);
+        self.echo.push(echo.order.0);
+        self.echoes.push(echo.order.1);
+        self.time.push(echo.time);
+        plants.push(echo.plant);
+    }
 }
 
 /// Owner of each triangle of a model: the ends of the runs of each part, and their axes or organs.
@@ -108,11 +193,11 @@ struct Owned<'a> {
 
 /// Label of a place of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Label {
-    part: u8,
-    axis: i32,
-    organ: i32,
-    order: i32,
+pub(crate) struct Label {
+    pub(crate) part: u8,
+    pub(crate) axis: i32,
+    pub(crate) organ: i32,
+    pub(crate) order: i32,
 }
 
 impl<'a> Owned<'a> {
@@ -166,6 +251,22 @@ impl<'a> Owned<'a> {
     }
 }
 
+/// Fails if a point of the path lies in wood: `from` brings it into the coordinates of the plant.
+fn check_path(plant: &Plant, path: &[DVec3], from: impl Fn(DVec3) -> DVec3) -> Result<(), SurveyError> {
+    for (row, at) in path.iter().enumerate() {
+        let at = from(*at);
+        let in_axis = |axis| {
+            let radii = plant.axis_radii(axis).windows(2).map(|r| r[0].min(r[1]));
+            let mut lines = plant.axis_points(axis).windows(2).zip(radii);
+            lines.any(|(line, radius)| from_line(at, line[0], line[1]) < radius * radius)
+        };
+        if (0..plant.axes.len()).map(AxisId::new).any(in_axis) {
+            return Err(SurveyError::InWood { path: format!("path[{row}]") });
+        }
+    }
+    Ok(())
+}
+
 fn from_line(at: DVec3, a: DVec3, b: DVec3) -> f64 {
     let way = b - a;
     let along = ((at - a).dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -203,8 +304,12 @@ fn to_f64(p: &[f32; 3]) -> DVec3 {
 ///
 /// Each station's beams are even over its view, so near and frontal surfaces get more points, as from a scanner. Of all
 /// hits of the beams, `points` are drawn by chance without replacement. `layout`: of this model. Guaranteed: the same
-/// bits for any executor; points lie on the surface to the last bit except for the noise, which is along the beam. Not
-/// modelled: beams that meet two surfaces at once, and reflectance.
+/// bits for any executor; points lie on the surface to the last bit except for the noise, which is along the beam.
+///
+/// Beams of a width ([`SurveySpec::beam_mrad`]) are 16 rays over their footprint. Rays within a pulse of the nearest one
+/// give an echo at the mean of their distances, so a beam that an edge splits gives a point between two surfaces: it has
+/// the label of the one with more rays, and their share. Farther rays give echoes of their own. A scanner on the move
+/// ([`SurveySpec::path`]) sends beams across its path, evenly in time and angle. Not modelled: reflectance.
 ///
 /// # Errors
 /// [`SurveyError`].
@@ -216,7 +321,9 @@ pub fn survey(
 ) -> Result<Surveyed, SurveyError> {
     let owned = Owned::new(plant, layout);
     let label = |hit: &Hit| Some((owned.label(hit.part, hit.triangle, hit.at)?, 0));
-    Ok(beams(model, spec, (seed, run), label)?.0)
+    spec.check()?;
+    check_path(plant, &spec.path, |at| at)?;
+    Ok(measured(model, spec, (seed, run), label)?.0)
 }
 
 /// A plant of a stand: its place, and the places of its parts in its model.
@@ -267,17 +374,26 @@ pub fn survey_stand(
         let at = turn.inverse() * (hit.at - position) / scale;
         Some((owned[row].label(hit.part - firsts[row], hit.triangle, at)?, i32::try_from(row).ok()?))
     };
-    beams(&model, spec, (seed, run), label)
+    spec.check()?;
+    for Stood { standing: Standing { position, turn, scale, .. }, plant, .. } in stand {
+        check_path(plant, &spec.path, |at| turn.inverse() * (at - *position) / *scale)?;
+    }
+    measured(&model, spec, (seed, run), label)
 }
 
-/// Returns the hits of the beams of all stations on a model; `label` returns the label and the plant of each.
-fn beams(
+/// Returns what the beams measure of a model, and the plant of each point; `label` returns both for a hit.
+fn measured(
     model: &Model,
     spec: &SurveySpec,
     (seed, run): (Seed, &Run<'_>),
-    label: impl Fn(&Hit) -> Option<(Label, i32)>,
+    label: impl Fn(&Hit) -> Option<(Label, i32)> + Sync,
 ) -> Result<(Surveyed, Vec<i32>), SurveyError> {
-    spec.check()?;
+    let (mut out, mut plants) = (Surveyed::default(), Vec::new());
+    if spec.is_traced() {
+        let found = echoes(model, spec, (seed, run), label)?;
+        found.iter().for_each(|echo| out.push(echo, &mut plants));
+        return Ok((out, plants));
+    }
     let wanted = spec.points as usize;
     // A fifth of the beams meet a plant of a dense crown, fewer a thin one: then the grid becomes finer.
     let beams = 6.0 * f64::from(spec.points) / f64::from(spec.stations);
@@ -299,21 +415,14 @@ fn beams(
         (0_u8..).zip(hits).flat_map(|(k, hits)| hits.into_iter().map(move |h| (k, h))).collect();
     let chosen = sample(all.len(), wanted, seed);
     let mut noise = seed.child(1).stream(Draw::Sampling);
-    let (mut out, mut plants) = (Surveyed::default(), Vec::new());
     for i in chosen {
         let (station, hit) = &all[i];
         let Some((label, plant)) = label(hit) else { continue };
         let off = if spec.noise_m > 0.0 { spec.noise_m * noise.normal() } else { 0.0 };
-        out.points.push((hit.at + hit.beam * off).to_array());
-        out.normals.push(hit.normal.as_vec3().to_array());
-        out.part.push(label.part);
-        out.axis.push(label.axis);
-        out.organ.push(label.organ);
-        out.order.push(label.order);
-        plants.push(plant);
-        out.station.push(*station);
-        #[expect(clippy::cast_possible_truncation, reason = "a distance in a mesh of single precision")]
-        out.distance.push(hit.distance_m as f32);
+        let (at, normal, distance_m) = (hit.at + hit.beam * off, hit.normal, hit.distance_m);
+        let (share, order, station, time) = (1.0, (0, 1), *station, 0.0);
+        let echo = Echo { at, normal, label, plant, share, order, station, time, distance_m };
+        out.push(&echo, &mut plants);
     }
     Ok((out, plants))
 }
@@ -398,7 +507,7 @@ mod tests {
         let tree = tree();
         let plain = SurveySpec { points: 2000, ..SurveySpec::default() };
         let still = scanned(&tree, &plain);
-        let moved = scanned(&tree, &SurveySpec { noise_m: 0.02, ..plain });
+        let moved = scanned(&tree, &SurveySpec { noise_m: 0.02, ..plain.clone() });
         let off: Vec<f64> = still
             .points
             .iter()
@@ -444,10 +553,57 @@ mod tests {
     }
 
     #[test]
+    fn wide_beams_see_the_same_tree_and_say_where_they_are_split() {
+        let tree = tree();
+        let plain = SurveySpec { points: 4000, ..SurveySpec::default() };
+        let (still, wide) =
+            (scanned(&tree, &plain), scanned(&tree, &SurveySpec { beam_mrad: 3.0, ..plain.clone() }));
+        assert_eq!((wide.points.len(), wide.share.len(), wide.time.len()), (4000, 4000, 4000));
+        assert!(still.share.iter().all(|s| *s == 1.0) && still.echoes.iter().all(|n| *n == 1));
+        let leaves = |c: &Surveyed| c.organ.iter().filter(|o| **o != NOTHING).count() as f64;
+        assert!((leaves(&still) / leaves(&wide) - 1.0).abs() < 0.1, "{} {}", leaves(&still), leaves(&wide));
+        let mixed = wide.share.iter().filter(|s| **s < 1.0).count();
+        assert!(mixed > 1000, "{mixed}");
+        assert!(wide.share.iter().all(|s| (0.0..=1.0).contains(s)));
+        assert!(wide.echo.iter().zip(&wide.echoes).all(|(k, n)| k < n));
+        let again = SurveySpec { beam_mrad: 3.0, ..plain };
+        assert_eq!(scanned(&tree, &again), wide);
+    }
+
+    #[test]
+    fn a_path_goes_past_trees_and_not_through_their_wood() {
+        let tree = tree();
+        let along = |x: f64| vec![DVec3::new(x, 1.0, -9.0), DVec3::new(x, 1.0, 0.0), DVec3::new(x, 1.0, 9.0)];
+        let spec = |x| SurveySpec { points: 2000, path: along(x), ..SurveySpec::default() };
+        let seen = scanned(&tree, &spec(6.0));
+        assert_eq!(seen.points.len(), 2000);
+        assert!(seen.time.windows(2).all(|w| w[0] <= w[1]));
+        for (p, (time, leg)) in seen.points.iter().zip(seen.time.iter().zip(&seen.station)) {
+            assert!((p[2] - (18.0 * time - 9.0)).abs() < 1e-6);
+            assert_eq!(*leg == 0, *time <= 0.5);
+        }
+        let of = (
+            tree.plant().expect("a plant"),
+            tree.model().expect("a model"),
+            tree.layout().expect("a layout"),
+        );
+        let refused = survey(of, &spec(0.0), Seed::new(5), &Run::plain()).expect_err("in the trunk");
+        assert_eq!(refused.to_string(), "path[1] lies in the wood of the plant: lead the path around it");
+    }
+
+    #[test]
     fn what_is_out_of_range_is_refused_by_name() {
         let bad = SurveySpec { stations: 0, ..SurveySpec::default() };
         let fault = bad.check().expect_err("no station");
         assert_eq!(fault.to_string(), "stations must be 1 to 64, not 0");
         assert!(SurveySpec { noise_m: f64::NAN, ..SurveySpec::default() }.check().is_err());
+        let bad = SurveySpec { path: vec![DVec3::ZERO; 1], ..SurveySpec::default() };
+        assert_eq!(
+            bad.check().expect_err("one point").to_string(),
+            "length of path must be 2 to 256 points, not 1"
+        );
+        let path = vec![DVec3::ZERO, DVec3::new(0.0, f64::NAN, 0.0)];
+        let fault = SurveySpec { path, ..SurveySpec::default() }.check().expect_err("no number").to_string();
+        assert!(fault.starts_with("path[1][1] must be -100,000 to 100,000 m"), "{fault}");
     }
 }

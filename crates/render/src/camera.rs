@@ -208,7 +208,7 @@ impl Camera {
     }
 
     /// Returns the eye-side start and unit direction of the ray through a pixel position.
-    pub(crate) fn ray(&self, pixel: DVec2) -> (DVec3, DVec3) {
+    pub fn ray(&self, pixel: DVec2) -> (DVec3, DVec3) {
         let d = (pixel - self.centre) / self.scale;
         match self.distance {
             None => (self.target + self.right * d.x - self.up * d.y, -self.back),

@@ -15,9 +15,12 @@
 //! | `light` | directions, depth maps, light that reaches vertices and ground |
 //! | `raster` | the visible triangle of each sample of a tile |
 //! | `hits` | [`Hit`]: surface points of beams and pixels, with the triangle |
+//! | `trace` | [`Tracer`]: first surfaces that single rays meet |
+//! | `albedo` | [`albedo()`]: colour of surfaces without light |
 //! | `impostor` | [`impostor()`]: views from all sides in one picture |
 //! | `shade` | colour of a fragment and of the background |
 
+mod albedo;
 mod camera;
 mod hits;
 mod impostor;
@@ -28,12 +31,15 @@ mod scene;
 mod shade;
 mod spec;
 mod texture;
+mod trace;
 
+pub use albedo::albedo;
 pub use camera::Camera;
 pub use hits::{Hit, hits};
 pub use impostor::impostor;
 pub use picture::{Picture, contact_sheet};
 pub use spec::{Background, PictureSpec, Pinhole, View};
+pub use trace::Tracer;
 
 use base::{Cancelled, Run};
 use mesh::Model;
