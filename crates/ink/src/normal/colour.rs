@@ -29,6 +29,8 @@ const GLOSS: u8 = 235;
 const SAME_HUE: f64 = 8.0;
 /// where both have channels that differ by at least this: grey has no hue.
 const HUED: u8 = 40;
+/// Greys of which each channel is at least this are tones of white.
+const PALE: u8 = 120;
 /// Least value of each channel of the white of the paper.
 const WHITE: u8 = 246;
 
@@ -206,9 +208,10 @@ fn is_gloss(own: [u8; 3], below: [u8; 3]) -> bool {
 
 /// Whether a colour is a lighter or darker tone of another.
 fn is_tint(own: [u8; 3], below: [u8; 3]) -> bool {
-    let [(a, own), (b, below)] = [own, below].map(hue);
+    let is_pale = |c: [u8; 3]| hue(c).1 < HUED && c.iter().all(|c| *c >= PALE);
+    let [(a, own_span), (b, below_span)] = [own, below].map(hue);
     let apart = (a - b).abs();
-    own.min(below) >= HUED && apart.min(360.0 - apart) < SAME_HUE
+    own_span.min(below_span) >= HUED && apart.min(360.0 - apart) < SAME_HUE || is_pale(own) && is_pale(below)
 }
 
 /// Whether a line lies in an outline, or nowhere farther from it than `slack`.

@@ -229,8 +229,8 @@ pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, words: &[(
     work.leave_labels_out(words);
     work.leave_paper_out();
     work.leave_backings_out();
-    work.merge_areas_of_one_colour();
     work.open_line_art();
+    work.merge_areas_of_one_colour();
     work.take_pen_outlines();
     work.take_traced_ink();
     work.merge_repeats();

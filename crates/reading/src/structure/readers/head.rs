@@ -5,7 +5,7 @@ use geom::polyline_length;
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::super::faces::Face;
+use super::super::faces::{Face, Run};
 use super::{Axis, Part, Proposal, Scene};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
@@ -197,7 +197,10 @@ fn lobes(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
         .enumerate()
         .filter(|(k, f)| members.contains(k) && f.shape.area < HEAD.disc_area * head.shape.area);
     let discs = inner.map(|(_, f)| f.shape.middle).filter(|p| is_central(*p));
+    // The end of the outline itself is no disc.
+    let is_own = |run: &&Run| head.strokes.contains(&run.stroke);
     let marks = scene.marks.iter().filter(|(face, _)| members.contains(face)).map(|(_, run)| run);
+    let marks = marks.filter(|run| !is_own(run));
     let marks = marks.filter(|run| run.points.iter().all(|p| is_central(*p))).map(|run| run.points[0]);
     let has_disc = discs.chain(marks).next().is_some();
     let petal = |arc: &[DVec2]| Part {
