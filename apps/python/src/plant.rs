@@ -143,9 +143,7 @@ impl RawPlant {
         let plant = self.0.plant();
         let owner = || -> Owner { self.0.clone() };
         let (axes, organs) = (&plant.axes, &plant.organs);
-        let vector = |f: fn(&Organ) -> burgeon::glam::DVec3| {
-            collect_column(organs.iter().map(move |o| f(o).to_array()))
-        };
+        let vector = |f: fn(&Organ) -> DVec3| collect_column(organs.iter().map(move |o| f(o).to_array()));
         Ok(match name {
             "node_position" => Column::from_rows(owner(), &plant.nodes.position),
             "node_radius" => Column::from_rows(owner(), &plant.nodes.radius_m),

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use mesh::Model;
 use render::{Camera, Hit, Tracer};
 
-use crate::survey::{Label, SurveyError, SurveySpec};
+use crate::survey_spec::{Label, SurveyError, SurveySpec};
 
 /// Named numbers of the beams.
 struct Beams {

@@ -53,6 +53,7 @@ mod split;
 mod stands;
 mod structure;
 mod survey;
+mod survey_spec;
 mod template;
 mod trees;
 mod venation;
@@ -117,7 +118,8 @@ pub use stands::{
     stand_map,
 };
 pub use structure::{write_structure, write_structure_with};
-pub use survey::{Stood, SurveyError, SurveySpec, Surveyed, survey, survey_stand, triangle_labels};
+pub use survey::{Stood, Surveyed, survey, survey_stand, triangle_labels};
+pub use survey_spec::{SurveyError, SurveySpec};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

@@ -17,7 +17,7 @@ use crate::texture::srgb;
 ///
 /// Each pixel has the mean colour of its samples that meet a surface, and their share as alpha; 0 everywhere for
 /// nothing. Guaranteed: the same bits for any executor; the pixels and samples of [`crate::render`]. Of a turntable only
-/// the first view is used. Cost: linear in triangles and pixels, a fifth of that of the picture with light.
+/// the first view is used. Cost: linear in triangles and pixels, a tenth of that of the picture with light.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.
