@@ -18,7 +18,7 @@ const ALLOWED: &[(&str, &[&str], &str)] = &[
     ),
     ("Grown", &["growth", "workspace"], "a tree; what a page is told of a shoot that grows in a headset"),
     ("Kind", &["reading", "spec"], "of the plant that a drawing shows; of a node of a text"),
-    ("Made", &["npm", "burgeon"], "a plant, and the same for JavaScript"),
+    ("Made", &["burgeon", "npm"], "a plant, and the same for JavaScript"),
     ("MaterialView", &["npm", "workspace"], SHELLS),
     ("PartView", &["npm", "workspace"], SHELLS),
     ("PlantView", &["npm", "workspace"], SHELLS),
