@@ -213,6 +213,8 @@ export function makers(engine: Engine): Makers {
     let shown = Promise.resolve();
     const look = (coarse: Answer): void => {
       shown = findThree().then(() => first?.(new Plant(coarse)));
+      // What it throws is told at the end.
+      shown.catch(() => {});
     };
     const [answer] = await Promise.all([engine.ask(full, options.signal, look), findThree()]);
     await shown;

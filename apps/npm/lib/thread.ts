@@ -22,7 +22,8 @@ export function thread(address: URL): Beside {
     },
   };
   own.on('message', (data: Said) => {
-    own.unref();
+    // A coarse copy is not the end of it.
+    if (!('first' in data)) own.unref();
     made.onmessage?.({ data });
   });
   own.on('error', (e: Error) => made.onerror?.({ message: e.message }));

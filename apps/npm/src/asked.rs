@@ -223,7 +223,19 @@ impl Asked {
     }
 
     /// Returns the largest size that is wanted.
+    ///
+    /// Trees alone are half of the download: they have no budgets.
     pub(crate) fn allowance(&self) -> Result<Allowance, Refused> {
+        if cfg!(not(feature = "makers")) {
+            for (name, is_given) in
+                [("triangles", self.triangles.is_some()), ("megabytes", self.megabytes.is_some())]
+            {
+                if is_given {
+                    let line = format!("{name} is kept by `burgeon`, not by `burgeon/growth`");
+                    return Err(Refused::unused(name, line));
+                }
+            }
+        }
         if let Some(count) = self.triangles {
             let (least, most) = Allowance::TRIANGLES;
             number("triangles", count as f64, (least as f64, most as f64))?;

@@ -28,7 +28,7 @@ use crate::asked::{from_json, refused};
 /// A tree that is asked for.
 #[wasm_bindgen]
 #[derive(Debug)]
-pub struct Growing {
+pub struct GrowingTree {
     asked: TreeAsked,
     spec: TreeSpec,
     preset: Option<&'static str>,
@@ -42,7 +42,7 @@ pub struct Growing {
 /// # Errors
 /// The fault of the request, as `Refusal` in JSON.
 #[wasm_bindgen]
-pub fn grow(asked: &str, seed: u64) -> Result<Growing, Refused> {
+pub fn grow(asked: &str, seed: u64) -> Result<GrowingTree, Refused> {
     host::tell_of_panics();
     let asked: TreeAsked = from_json(asked)?;
     let (base, preset) = match (&asked.preset, &asked.toml) {
@@ -70,11 +70,11 @@ pub fn grow(asked: &str, seed: u64) -> Result<Growing, Refused> {
         None => asked.height_m.map(|h| asked::number("height_m", h, (0.001, 1000.0))).transpose()?,
     };
     let options = TreeOptions { skin, height_m, ..TreeOptions::default() };
-    Ok(Growing { asked, spec, preset, seed, options, tree: TreeEvaluator::default() })
+    Ok(GrowingTree { asked, spec, preset, seed, options, tree: TreeEvaluator::default() })
 }
 
 #[wasm_bindgen]
-impl Growing {
+impl GrowingTree {
     /// Makes a coarse copy of a large tree, without textures: it is ready long before the whole, which then takes as much less
     /// time.
     ///

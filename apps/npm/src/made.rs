@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 #[cfg(feature = "makers")]
-use burgeon::formats::WriteError;
-use burgeon::formats::{self, ExportSpec, PngCache};
+use burgeon::Levels;
+use burgeon::formats::{self, ExportSpec};
+#[cfg(feature = "makers")]
+use burgeon::formats::{PngCache, WriteError};
 use burgeon::mesh::{AlphaMode, Model, Part, Texture};
 use burgeon::plant::Plant;
 use burgeon::skin::{Layout, Owner};
-use burgeon::{Counts, ItemReport, Levels, TreeEvaluator, part_of_axis, part_of_organ};
+use burgeon::{Counts, ItemReport, TreeEvaluator, part_of_axis, part_of_organ};
 use wasm_bindgen::prelude::*;
 
 use crate::asked::{Asked, Refused, Settled};
@@ -162,6 +164,7 @@ impl Made {
 }
 
 /// Reduces a plant to the allowed size; the finest level that fits becomes the plant.
+#[cfg(feature = "makers")]
 fn within(
     levels: Vec<Level>,
     (plant, report): (&Plant, &mut ItemReport),
@@ -190,44 +193,36 @@ fn within(
     Ok(kept.zip(owners.drain(fitted.level..)).map(|(model, owners)| Level { model, owners }).collect())
 }
 
+/// Trees alone have no budgets, which [`Asked::allowance`] refuses.
+#[cfg(not(feature = "makers"))]
+fn within(
+    levels: Vec<Level>,
+    _: (&Plant, &mut ItemReport),
+    _: Option<&Settled>,
+    asked: &Asked,
+) -> Result<Vec<Level>, Refused> {
+    asked.allowance().map(|_| levels)
+}
+
 /// Returns the bytes of the file `glb` of a model, the first one.
 #[cfg(feature = "makers")]
 fn weight<'a>(
     (plant, name): (&Plant, &str),
-    models: impl Iterator<Item = &'a Model>,
+    mut models: impl Iterator<Item = &'a Model>,
     settled: Option<&Settled>,
     cache: &mut PngCache,
 ) -> Result<u64, Refused> {
     let failed = |e: WriteError| Refused::plain("write", e.to_string());
     let Some(settled) = settled else {
-        return plain_weight(models, cache);
+        let mut bytes = Vec::new();
+        if let Some(model) = models.next() {
+            formats::write_glb_with(model, cache, &mut bytes).map_err(failed)?;
+        }
+        return Ok(bytes.len() as u64);
     };
     let models: Vec<Model> = models.map(|model| settled.named(name, model)).collect();
     let levels: Vec<formats::Level<'_>> = models.iter().map(formats::Level::plain).collect();
     settled.file().weigh(plant, &levels, cache).map_err(failed)
-}
-
-/// Returns the bytes of the file `glb` of a model, the first one: there is no writer for programs.
-#[cfg(not(feature = "makers"))]
-fn weight<'a>(
-    _: (&Plant, &str),
-    models: impl Iterator<Item = &'a Model>,
-    settled: Option<&Settled>,
-    cache: &mut PngCache,
-) -> Result<u64, Refused> {
-    settled.map_or_else(|| plain_weight(models, cache), |settled| Err(settled.unwritten()))
-}
-
-fn plain_weight<'a>(
-    mut models: impl Iterator<Item = &'a Model>,
-    cache: &mut PngCache,
-) -> Result<u64, Refused> {
-    let mut bytes = Vec::new();
-    if let Some(model) = models.next() {
-        let written = formats::write_glb_with(model, cache, &mut bytes);
-        written.map_err(|e| Refused::plain("write", e.to_string()))?;
-    }
-    Ok(bytes.len() as u64)
 }
 
 fn part_view(part: &Part) -> PartView {

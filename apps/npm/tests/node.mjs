@@ -178,7 +178,7 @@ test('a budget is kept, and an impossible one names the least', async () => {
   assert.ok(light.files.glb.length <= 500_000 && whole.files.glb.length > 500_000);
   assert.ok(theirs('light.glb', '--megabytes', '0.5').equals(light.files.glb));
   assert.match(light.report.warnings.join(), /to keep within the budget/);
-  const few = await grow('hazel', { ...asked, triangles: 4000, lods: 1, engine: 'unity' });
+  const few = await grow('hazel', { ...asked, wind: true, triangles: 4000, lods: 1, engine: 'unity' });
   const counts = [0, 1].map((level) => few.meshes(level).reduce((sum, m) => sum + m.indices.length / 3, 0));
   assert.ok(counts[0] <= 4000 && counts[1] < counts[0] && few.levels === 2, counts.join());
   assert.equal(few.report.counts.triangles, counts[0]);
@@ -193,7 +193,7 @@ test('a tree grows to a height or a diameter as by the command', async () => {
   const asked = { seed: 3, detail: 0.2, wind: false, measures: true };
   for (const [name, value] of [
     ['height', 2.5],
-    ['dbh', 0.02],
+    ['dbh', 0.05],
   ]) {
     const mine = await grow('hazel', { ...asked, [name]: value });
     const words = ['grow', 'hazel', '--seed', '3', '--detail', '0.2', `--${name}`, String(value), '--json'];
@@ -470,6 +470,8 @@ test('in this thread it makes the same plants', async () => {
     assert.equal(ticks, 0, 'in another thread');
     clearInterval(timer);
     assert.ok(expected['tree oak'].startsWith(tree.digest));
+    if (place.startsWith('growth'))
+      await assert.rejects(here.grow('oak', { triangles: 900 }), /not by `burgeon\/growth`/);
   }
 });
 
@@ -482,7 +484,7 @@ test('no option is ignored: it changes what comes out, or is refused by its name
   const skin = { detail: 0.3, sides: 9, textures: false, texture_size: 64 };
   const uses = [
     [(o) => grow('hazel', { fields: { age: 3 }, ...o }), { ...common, ...skin, height_m: 1 }],
-    [(o) => grow('hazel', { detail: 0.2, ...o }), { height: 2, dbh: 0.02, triangles: 9000, first: 'soon' }],
+    [(o) => grow('hazel', { detail: 0.2, ...o }), { height: 2, dbh: 0.05, triangles: 9000, first: 'soon' }],
     [(o) => grow('hazel', { detail: 0.2, files: ['glb'], ...o }), { megabytes: 0.5 }],
     [(o) => grow('hazel', { fields: { age: 3 }, textures: false, ...o }), { texture_size: 64 }],
     [(o) => sketch([stem], o), { ...common, detail: 0.3, name: 'mine', yUp: false }],

@@ -70,6 +70,8 @@ def grow(
     texture_size: "Optional[int]" = None,
     foliage: "Optional[str]" = None,
     leaf: "Optional[Plant]" = None,
+    height: "Optional[float]" = None,
+    dbh: "Optional[float]" = None,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
     trust_paths: bool = False,
@@ -84,6 +86,8 @@ def grow(
     ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: number of sides of an ordinary branch, 3 to 24; ``textures``: False
     for plain colours; ``texture_size``: pixels of a side, 64 to 4096; ``foliage``: leaves as ``outlines``, as ``cards`` from
     which they are cut out, or ``by-level`` of detail; ``leaf``: a result of ``leaf()`` that replaces the tree's own leaf;
+    ``height``, ``dbh``: height, or diameter of the stem at 1.3 m, metres, within what its species reaches: the tree has the age
+    at which it comes nearest, and is scaled by the rest;
     ``wind``: with columns for wind; ``budget``: factor by which the usual limits may be exceeded; ``trust_paths``: meshes, points
     and a leaf that a file names may lie outside of its folder. Ctrl-C stops it. Raises SpecError, BudgetError.
     """
@@ -96,7 +100,14 @@ def grow(
         raise unused("foliage", foliage, "is cut out of pictures of leaves, which textures=False leaves out")
     if not isinstance(leaf, (Plant, type(None))):
         raise TypeError(f"leaf must be a plant of leaf(), not {leaf!r}")
-    plant = Plant(recipe("grow", base, asked, leaf))
+    size = {
+        "height": None if height is None else number("height", height, 0.01, 1000, "m"),
+        "dbh": None if dbh is None else number("dbh", dbh, 0.001, 30, "m"),
+    }
+    told = [name for name, value in (("height", height), ("dbh", dbh), ("age", fields.get("age"))) if value is not None]
+    if len(told) > 1:
+        raise wrong(f"{told[0]} and {told[1]} exclude each other: give one", told[1], "given", "left out")
+    plant = Plant(recipe("grow", base, asked, leaf, size))
     for name, value in (("leaf", leaf), ("foliage", foliage)):
         if value is not None and plant.spec.get("bare"):
             raise unused(name, value, "is of trees with leaves, and this one is bare")

@@ -536,6 +536,8 @@ class Plant:
         impostor: "Optional[int]" = None,
         pack: "Optional[str]" = None,
         sway: bool = False,
+        triangles: "Optional[int]" = None,
+        megabytes: "Optional[float]" = None,
     ) -> "Tuple[str, ...]":
         """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``,
         ``.swc``), its cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): completely or not at all.
@@ -544,8 +546,13 @@ class Plant:
         in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of
         leaf once; ``pack``: ``quantized`` or ``meshopt``; ``sway``: joints with an animation (docs/exports.md).
 
+        ``triangles``: most triangles of the model, 100 or more, which then is the first level of detail within it; ``megabytes``:
+        most megabytes of its file and those beside it, 0.001 to 4000: textures become smaller first, then the model becomes the
+        first level of detail that fits. A budget that nothing fits is a SpecError with the least that there is.
+
         ``engine``: ``three``, ``blender``, ``unity``, ``unreal``, ``godot``, ``isaac`` or ``print`` sets what is left open as the
-        importer of that program takes it (docs/engines). What was set is returned, as options of ``burgeon``.
+        importer of that program takes it (docs/engines). What was set is returned, as options of ``burgeon``,
+        and at the end how the model was reduced for a budget.
         """
         folder, name = os.path.split(os.fspath(path))
         stem, dotted = os.path.splitext(name)
@@ -560,6 +567,8 @@ class Plant:
             "impostor": None if impostor is None else whole("impostor", impostor, 128, 4096),
             "pack": None if pack is None else word("pack", pack),
             "sway": flag("sway", sway),
+            "triangles": None if triangles is None else whole("triangles", triangles, 100, 4_000_000_000),
+            "megabytes": None if megabytes is None else number("megabytes", megabytes, 0.001, 4000),
         }
         if extension in (*STRUCTURES, "burgeon"):
             asked = [word for word, value in form.items() if value not in (0, False, None)]

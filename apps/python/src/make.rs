@@ -16,7 +16,9 @@ use burgeon::leaf::{LeafSpec, PalmateSpec, ParallelSpec, Rays, ScanSpec};
 use burgeon::mesh::PointCloud;
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
-use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
+use burgeon::{
+    HeightError, LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeGoal, TreeSpec,
+};
 use companions::{LIMITS, Named, NamedFault, NamedFileError, Trust};
 use pyo3::prelude::*;
 
@@ -39,13 +41,37 @@ pub(crate) struct Base {
     trust_paths: bool,
 }
 
-/// Grows a tree; `leaf`: the leaf that it bears.
+/// Size that a tree grows to, as Python requests it.
+#[derive(FromPyObject)]
+pub(crate) struct Size {
+    /// Height, metres.
+    #[pyo3(item)]
+    height: Option<f64>,
+    /// Diameter at breast height, metres.
+    #[pyo3(item)]
+    dbh: Option<f64>,
+}
+
+impl Size {
+    fn goal(&self) -> PyResult<Option<TreeGoal>> {
+        let goal = |name: &str, value: Option<f64>, (least, most): (f64, f64)| {
+            let Some(value) = value else { return Ok(None) };
+            let fault = || beyond(name, value, &format!("{least} to {most} m"));
+            (least..=most).contains(&value).then_some(value).map(Some).ok_or_else(fault)
+        };
+        let height = goal("height", self.height, TreeGoal::HEIGHTS_M)?.map(TreeGoal::Height);
+        Ok(goal("dbh", self.dbh, TreeGoal::DIAMETERS_M)?.map(TreeGoal::Dbh).or(height))
+    }
+}
+
+/// Grows a tree; `leaf`: the leaf that it bears; `size`: the size that it grows to.
 #[pyfunction]
 pub(crate) fn grow(
     py: Python<'_>,
     base: Base,
     asked: Asked<'_>,
     leaf: Option<PyRef<'_, RawPlant>>,
+    size: Size,
 ) -> PyResult<RawPlant> {
     let (spec, preset) = base.tree(py)?;
     let mut spec = asked.spec(py, &spec)?;
@@ -55,9 +81,20 @@ pub(crate) fn grow(
         (None, Some(file)) => Some(leaf_beside(py, &base, &file, asked.seed())?),
         (None, None) => None,
     };
+    let height_m = match size.goal()? {
+        None => None,
+        Some(goal) => {
+            let (seed, budget) = (asked.seed(), asked.budget()?);
+            let height = compute(py, budget, |run| burgeon::aim_at(&mut spec, seed, goal, run))?;
+            Some(height.map_err(|e| match e {
+                HeightError::Tree(e) => refused(py, &e),
+                e => unusable(py, &e),
+            })?)
+        }
+    };
     let name = spec.name.clone();
     let mut tree = burgeon::tree_settings(&spec, preset);
-    tree.skin = skin;
+    (tree.skin, tree.height_m) = (skin, height_m);
     asked.bearing(py, &name, Maker::Tree(Box::new(tree)), leaf, wind).map(RawPlant)
 }
 

@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use burgeon::formats::{
-    ExportSpec, Level, ModelFormat, Packing, PngCache, Room, WriteError, assembly_files, gltf_files,
-    write_glb_levels, write_glb_rigged,
+    ExportSpec, ModelFormat, Packing, PngCache, Room, WriteError, assembly_files, gltf_files,
 };
-use burgeon::mesh::{Copies, Model};
+use burgeon::mesh::Model;
 use burgeon::skin::SolidSpec;
 use burgeon::{
-    Engine, ExportChoice, SceneError, Unit, UpAxis, assemble, name_after, print_plant, write_engine_glb,
+    Allowance, AllowanceError, Engine, ExportChoice, FileForm, Levels, SceneError, Unit, UpAxis, assemble,
+    name_after, print_plant,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -43,6 +43,12 @@ pub(crate) struct Form {
     /// The program that it is for.
     #[pyo3(item)]
     engine: Option<String>,
+    /// Most triangles of the model.
+    #[pyo3(item)]
+    triangles: Option<u64>,
+    /// Most megabytes of its files.
+    #[pyo3(item)]
+    megabytes: Option<f64>,
     /// Whether unit, up axis and number of coarser copies are asked for.
     #[pyo3(item)]
     given: [bool; 3],
@@ -73,6 +79,29 @@ impl Form {
         let Some(word) = self.pack.as_deref() else { return Ok(None) };
         let packing = Packing::from_word(word);
         packing.map(Some).ok_or_else(|| beyond("pack", format!("{word:?}"), &Packing::words()))
+    }
+
+    fn allowance(&self) -> PyResult<Allowance> {
+        let (least, most) = Allowance::TRIANGLES;
+        if let Some(count) = self.triangles.filter(|count| !(least..=most).contains(count)) {
+            return Err(beyond("triangles", count, &format!("{least} to {most}")));
+        }
+        let (least, most) = Allowance::MEGABYTES;
+        if let Some(size) = self.megabytes.filter(|size| !(least..=most).contains(size)) {
+            return Err(beyond("megabytes", size, &format!("{least} to {most}")));
+        }
+        Ok(Allowance::new(self.triangles, self.megabytes))
+    }
+
+    /// Fails for options that a printed body does not have.
+    fn check_print(&self) -> PyResult<()> {
+        if self.lods > 0 {
+            return refuse("lods", "a print is one body: it has no coarser copies");
+        }
+        if self.triangles.is_some() {
+            return refuse("triangles", "a print is one body: its size and walls set its triangles");
+        }
+        Ok(())
     }
 
     /// Sets what the program wants and Python leaves open.
@@ -144,28 +173,20 @@ impl Form {
     }
 }
 
-/// A model, and its division into the rest and copied leaves.
-type Split = (Model, Option<(Model, Vec<Copies>)>);
-
-/// Returns the level of a file for a model.
-fn level<'a>(model: &'a Model, split: Option<&'a (Model, Vec<Copies>)>) -> Level<'a> {
-    match split {
-        Some((rest, copies)) => Level { model: rest, copies },
-        None => Level::plain(model),
-    }
-}
-
 impl Held {
     /// Returns whether it has columns for wind.
     fn is_blown(&self) -> bool {
         self.model().parts.iter().any(|p| !p.mesh.wind.is_empty())
     }
 
-    /// Returns its coarser copies, finest first.
-    fn coarser(&self, py: Python<'_>, form: &Form) -> PyResult<Vec<Split>> {
-        let mut all = Vec::new();
-        for level in 1..=form.lods {
-            let made = compute(py, self.budget, |run| -> Result<Split, SceneError> {
+    /// Returns its coarser copies, finest first, and for each of all the leaves that are copies, if they are asked for.
+    fn levels(&self, py: Python<'_>, form: &Form, lods: u32) -> PyResult<Levels> {
+        let mut levels = Levels::default();
+        if form.instances {
+            levels.copies.push(burgeon::skin::copies(self.plant(), self.model(), self.layout()));
+        }
+        for level in 1..=lods {
+            let made = compute(py, self.budget, |run| -> Result<_, SceneError> {
                 if let Some(lone) = &self.lone {
                     return Ok((lone.at_level(level, run)?, None));
                 }
@@ -176,13 +197,22 @@ impl Held {
                 let split = if form.instances { at.copies() } else { None };
                 Ok((at.model, split))
             })?;
-            all.push(made.map_err(|e| refused(py, &e))?);
+            let (model, split) = made.map_err(|e| refused(py, &e))?;
+            if form.instances {
+                levels.copies.push(split.unwrap_or_else(|| (model.clone(), Vec::new())));
+            }
+            levels.lods.push(model);
         }
         if let Some(size) = form.impostor {
             let made = compute(py, self.budget, |run| burgeon::render::impostor(self.model(), size, run))?;
-            all.extend(made.map_err(|e| refused(py, &SceneError::from(e)))?.map(|far| (far, None)));
+            if let Some(far) = made.map_err(|e| refused(py, &SceneError::from(e)))? {
+                if form.instances {
+                    levels.copies.push((far.clone(), Vec::new()));
+                }
+                levels.lods.push(far);
+            }
         }
-        Ok(all)
+        Ok(levels)
     }
 }
 
@@ -201,6 +231,7 @@ pub(crate) fn files<'py>(
     let spec = axes(&form.unit, &form.up)?;
     let packing = form.packing()?;
     form.check(format, plant)?;
+    let allowance = form.allowance()?;
     let held = if (form.sway || has_wind) && !plant.is_blown() {
         plant.after_with(py, Some(true), [])?
     } else {
@@ -209,11 +240,13 @@ pub(crate) fn files<'py>(
     if engine.is_some_and(|engine| engine.has_assembly(extension)) {
         return assembly(py, &held, stem, (&form, &spec, set));
     }
-    let coarser = held.coarser(py, &form)?;
-    let printed = if engine == Some(Engine::Print) {
-        if !coarser.is_empty() {
-            return refuse("lods", "a print is one body: it has no coarser copies");
-        }
+    let is_print = engine == Some(Engine::Print);
+    if is_print {
+        form.check_print()?;
+    }
+    let lods = if is_print { 0 } else { allowance.levels(form.lods) };
+    let levels = held.levels(py, &form, lods)?;
+    let own = if is_print {
         let solid = SolidSpec::default();
         let made = compute(py, held.budget, |run| print_plant(held.plant(), held.model(), &solid, run))?;
         Some(made.map_err(|e| unusable(py, &e))?.model)
@@ -221,9 +254,13 @@ pub(crate) fn files<'py>(
         None
     };
     let nodes = engine.filter(|_| has_nodes);
-    let writing = Writing { held, coarser, printed, form, nodes, format, packing, spec };
+    let is_one_file = (form.one_file || nodes.is_some()) && format.holds(Room::Levels);
+    let file = FileForm { format, axes: spec, packing, sways: form.sway, is_one_file, nodes };
+    let writing = Writing { held, own, levels, form, allowance, file };
     let (extension, stem) = (extension.to_owned(), stem.to_owned());
     let files = aside(py, move || writing.files(&extension, &stem))?.map_err(|e| unusable(py, &e))?;
+    let (files, line) = files.map_err(|e| unusable(py, &e))?;
+    let set = set.into_iter().chain(line).collect();
     Ok((files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect(), set))
 }
 
@@ -234,8 +271,14 @@ fn assembly<'py>(
     stem: &str,
     (form, spec, set): (&Form, &ExportSpec, Vec<String>),
 ) -> PyResult<Written<'py>> {
-    if form.lods > 0 {
-        return refuse("lods", "Nanite makes coarser copies itself");
+    for (name, is_given) in [
+        ("lods", form.lods > 0),
+        ("triangles", form.triangles.is_some()),
+        ("megabytes", form.megabytes.is_some()),
+    ] {
+        if is_given {
+            return refuse(name, "Nanite makes coarser copies itself");
+        }
     }
     let parts = (held.plant(), held.model(), held.layout());
     let made = compute(py, held.budget, |run| assemble(parts, run))?;
@@ -246,74 +289,78 @@ fn assembly<'py>(
     Ok((files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect(), set))
 }
 
-/// A model, and what it is without leaves that are one form, with names after the plant.
-fn named_after(plant: &str, model: &Model, split: Option<&(Model, Vec<Copies>)>) -> Split {
-    let mut named = (model.clone(), split.cloned());
-    name_after(plant, &mut named.0);
-    if let Some((rest, _)) = &mut named.1 {
-        name_after(plant, rest);
-    }
-    named
-}
-
 /// Contents and settings of the files.
 struct Writing {
     held: Arc<Held>,
-    coarser: Vec<Split>,
-    /// The one body that a printer gets.
-    printed: Option<Model>,
+    /// Its model, where that is not the plant's.
+    own: Option<Model>,
+    levels: Levels,
     form: Form,
-    /// The program that wants levels and shapes for collisions as nodes of one file.
-    nodes: Option<Engine>,
-    format: ModelFormat,
-    packing: Option<Packing>,
-    spec: ExportSpec,
+    allowance: Allowance,
+    file: FileForm,
 }
 
+/// Files by their names, and in words how the model was reduced.
+type Reduced = (Vec<(String, Vec<u8>)>, Option<String>);
+
 impl Writing {
-    fn files(&self, extension: &str, stem: &str) -> Result<Vec<(String, Vec<u8>)>, WriteError> {
-        let (held, form, packing) = (&self.held, &self.form, self.packing);
-        let model = self.printed.as_ref().unwrap_or(held.model());
-        let split = form.instances.then(|| burgeon::skin::copies(held.plant(), model, held.layout()));
-        let models = std::iter::once((model, split.as_ref()));
-        let models = models.chain(self.coarser.iter().map(|(m, s)| (m, s.as_ref())));
-        let named: Vec<Split> = if form.names {
-            let name = &held.plant().name;
-            models.clone().map(|(model, split)| named_after(name, model, split)).collect()
-        } else {
-            Vec::new()
-        };
-        let models: Vec<_> =
-            if form.names { named.iter().map(|(m, s)| (m, s.as_ref())).collect() } else { models.collect() };
-        let levels: Vec<Level<'_>> = models.iter().map(|(model, split)| level(model, *split)).collect();
+    /// Names all parts and materials after the plant.
+    fn name(&mut self) {
+        let name = &self.held.plant().name;
+        let model = self.own.get_or_insert_with(|| self.held.model().clone());
+        let rest = self.levels.copies.iter_mut().map(|(rest, _)| rest);
+        self.levels.lods.iter_mut().chain(rest).chain([model]).for_each(|model| name_after(name, model));
+    }
+
+    /// Reduces the model to the allowed size; says in words how.
+    fn fit(&mut self, cache: &mut PngCache) -> Result<Result<Option<String>, AllowanceError>, WriteError> {
+        if !self.allowance.is_any() {
+            return Ok(Ok(None));
+        }
+        let model = self.own.take().unwrap_or_else(|| self.held.model().clone());
+        let levels = std::mem::take(&mut self.levels);
+        let asked = (self.form.lods, self.form.impostor.is_some());
+        let (plant, file) = (self.held.plant(), self.file);
+        let weigh = |model: &Model, levels: &Levels| file.weigh(plant, &levels.split(model), cache);
+        let fitted = levels.within(model, self.allowance, asked, weigh)?;
+        Ok(fitted.map(|fitted| {
+            let line = fitted.line();
+            (self.own, self.levels) = (Some(fitted.model), fitted.levels);
+            line
+        }))
+    }
+
+    fn files(mut self, extension: &str, stem: &str) -> Result<Result<Reduced, AllowanceError>, WriteError> {
         let mut cache = PngCache::new();
-        if form.one_file || self.nodes.is_some() {
+        if self.form.names {
+            self.name();
+        }
+        let line = match self.fit(&mut cache)? {
+            Ok(line) => line,
+            Err(e) => return Ok(Err(e)),
+        };
+        let (held, file) = (&self.held, &self.file);
+        let model = self.own.as_ref().unwrap_or(held.model());
+        let levels = self.levels.split(model);
+        if file.is_one_file {
             let mut bytes = Vec::new();
-            match self.nodes {
-                Some(engine) => {
-                    let models: Vec<&Model> = models.iter().map(|(model, _)| *model).collect();
-                    write_engine_glb(engine, held.plant(), &models, &mut cache, &mut bytes)?;
-                }
-                None => write_glb_levels(&levels, packing, &mut cache, &mut bytes)?,
-            }
-            return Ok(gltf_files(bytes, self.format, stem)?.named(format!("{stem}.{extension}")));
+            file.write_levels(held.plant(), &levels, &mut cache, &mut bytes)?;
+            let files = gltf_files(bytes, file.format, stem)?.named(format!("{stem}.{extension}"));
+            return Ok(Ok((files, line)));
         }
         let mut files = Vec::new();
-        for (k, (level, (model, _))) in levels.iter().zip(&models).enumerate() {
+        let models = std::iter::once(model).chain(&self.levels.lods);
+        for (k, (level, model)) in levels.iter().zip(models).enumerate() {
             let stem = if k == 0 { stem.to_owned() } else { format!("{stem}-lod{k}") };
-            let rig = form.sway.then(|| burgeon::skin::sway(model, burgeon::skin::gust(model))).flatten();
-            if self.format.holds(Room::Joints) {
+            if file.format.holds(Room::Joints) {
                 let mut bytes = Vec::new();
-                match rig {
-                    Some(rig) => write_glb_rigged(model, &rig, &mut cache, &mut bytes)?,
-                    None => write_glb_levels(std::slice::from_ref(level), packing, &mut cache, &mut bytes)?,
-                }
-                let written = gltf_files(bytes, self.format, &stem[..])?;
+                file.write_glb(held.plant(), std::slice::from_ref(level), &mut cache, &mut bytes)?;
+                let written = gltf_files(bytes, file.format, &stem[..])?;
                 files.extend(written.named(format!("{stem}.{extension}")));
             } else {
-                files.extend(written(model, self.format, extension, &stem, &self.spec)?);
+                files.extend(written(model, file.format, extension, &stem, &file.axes)?);
             }
         }
-        Ok(files)
+        Ok(Ok((files, line)))
     }
 }

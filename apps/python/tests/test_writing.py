@@ -26,6 +26,10 @@ ASKED = ("--seed", 3, "--age", 4, "--detail", 0.2)
         ("a.glb", {"engine": "blender"}, ["--for", "blender"]),
         ("a.usda", {"engine": "isaac"}, ["--for", "isaac"]),
         ("a.stl", {"engine": "print"}, ["--for", "print"]),
+        ("a.glb", {"triangles": 4000, "lods": 1}, ["--triangles", 4000, "--lods", 1]),
+        ("a.glb", {"megabytes": 0.5, "instances": True}, ["--megabytes", 0.5, "--instances"]),
+        ("a.glb", {"megabytes": 0.4, "engine": "unity"}, ["--megabytes", 0.4, "--for", "unity"]),
+        ("a.obj", {"megabytes": 0.6}, ["--megabytes", 0.6]),
     ],
 )
 def test_files_are_those_of_the_command_line(cli, tmp_path, name, how, words):
@@ -38,6 +42,47 @@ def test_files_are_those_of_the_command_line(cli, tmp_path, name, how, words):
     assert sorted(p.name for p in mine.iterdir()) == names and name in names
     for file in names:
         assert (mine / file).read_bytes() == (theirs / file).read_bytes(), file
+
+
+def test_a_budget_is_kept_and_an_impossible_one_names_the_least(tmp_path):
+    tree = bg.grow("hazel", **SMALL)
+    path = tmp_path / "a.glb"
+    assert tree.save(path, megabytes=900, triangles=900_000) == ()
+    whole = path.stat().st_size
+    told = tree.save(path, megabytes=0.5)
+    assert path.stat().st_size <= 500_000 < whole and told[-1].startswith("to keep within the budget, "), told
+    with pytest.raises(bg.SpecError, match="at least") as few:
+        tree.save(tmp_path / "b.glb", triangles=100)
+    least = int(str(few.value).split("at least ")[1].split(" ")[0])
+    assert tree.save(path, triangles=least)
+    with pytest.raises(bg.SpecError, match="at least"):
+        tree.save(path, triangles=least - 1)
+    with pytest.raises(bg.SpecError, match=r"at least 0\.\d+ megabytes"):
+        tree.save(path, megabytes=0.001)
+
+
+def test_a_tree_grows_to_a_height_or_a_diameter_as_by_the_command_line(cli, tmp_path):
+    for size in ({"height": 2.5}, {"dbh": 0.05}):
+        ((name, value),) = size.items()
+        mine = bg.grow("hazel", seed=3, detail=0.2, **size)
+        theirs = cli("grow", "hazel", "--seed", 3, "--detail", 0.2, f"--{name}", value, "--json")
+        assert mine.digest == theirs["digest"] != bg.grow("hazel", seed=3, detail=0.2).digest
+    assert bg.grow("hazel", seed=3, detail=0.2, height=2.5).measures()["height_m"] == pytest.approx(2.5, abs=0.25)
+    # A project keeps it, other settings do, and an age of one's own ends it.
+    mine.save(tmp_path / "x.burgeon")
+    (opened,) = bg.open(tmp_path / "x.burgeon")
+    assert opened.digest == mine.digest == mine.again(detail=0.2).digest
+    assert mine.again(age=2).digest == bg.grow("hazel", seed=3, detail=0.2, age=2).digest
+    for wrong, words in [
+        ({"height": 60}, "60 m is out of reach"),
+        ({"dbh": 3}, "breast height is out of reach"),
+        ({"height": 2, "dbh": 0.1}, "height and dbh exclude each other"),
+        ({"height": 2, "age": 3}, "height and age exclude each other"),
+        ({"height": -1}, "height must be 0.01 to 1000 m, not -1"),
+        ({"height": 2, "obstacles": [{"shape": "sphere", "centre": [0, 9, 0], "radius_m": 0.5}]}, "obstacles"),
+    ]:
+        with pytest.raises(bg.SpecError, match=words):
+            bg.grow("hazel", seed=3, **wrong)
 
 
 def test_leaves_on_cards_are_those_of_the_command_line(cli):
@@ -97,6 +142,11 @@ def test_a_leaf_of_chief_veins_is_borne_as_by_the_command_line(cli, shown, tmp_p
         ("x.obj", {"sway": True}, "sway is of .glb or .gltf files"),
         ("x.stl", {"impostor": 128}, "of models with textures"),
         ("x.mtg", {"lods": 1}, "lods is of models, not of .mtg files"),
+        ("x.mtg", {"triangles": 900}, "triangles is of models, not of .mtg files"),
+        ("x.glb", {"triangles": 99}, "triangles must be 100 to"),
+        ("x.glb", {"megabytes": 0}, "megabytes must be 0.001 to 4000"),
+        ("x.stl", {"engine": "print", "triangles": 900}, "its size and walls"),
+        ("x.usda", {"engine": "unreal", "megabytes": 9}, "Nanite"),
     ],
 )
 def test_what_nothing_uses_is_refused(small, tmp_path, name, how, words):

@@ -20,7 +20,7 @@ struct Limits {
     height: f64,
 }
 
-const LIMITS: Limits = Limits { ramp: 4, passes: 40, worth: 0.01, turn: 0.5, height: 0.02 };
+const LIMITS: Limits = Limits { ramp: 4, passes: 40, worth: 0.02, turn: 0.5, height: 0.02 };
 
 /// Squared distances to planes, weighted by areas: the upper half of a symmetric matrix, and the sum of the weights.
 #[derive(Clone, Copy, Default)]
@@ -185,6 +185,8 @@ impl Surface {
 
     /// Joins two neighbours if the surface allows it.
     fn collapse(&mut self, a: u32, b: u32, allowed: f64) -> bool {
+        let sum = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
+        let Some(place) = self.place(a, b, &sum, allowed) else { return false };
         let (near, far) = (self.ring(a), self.ring(b));
         let shared: Vec<u32> = near.iter().copied().filter(|c| far.contains(c)).collect();
         // The surface stays two-manifold if nothing but the two triangles beside the edge joins its ends (Dey et al. 1999), and
@@ -194,18 +196,6 @@ impl Surface {
         if !keeps(c) || !keeps(d) || near.len() + far.len() < 7 {
             return false;
         }
-        let sum = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let (p, q) = (self.point(a), self.point(b));
-        let mut best: Option<(f64, [f32; 3])> = None;
-        for place in [0.5 * (p + q), p, q] {
-            #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
-            let rounded = place.to_array().map(|x| x as f32);
-            let error = sum.error(DVec3::from_array(rounded.map(f64::from)));
-            if error <= allowed && best.is_none_or(|(least, _)| error < least) {
-                best = Some((error, rounded));
-            }
-        }
-        let Some((_, place)) = best else { return false };
         let to = DVec3::from_array(place.map(f64::from));
         if !self.keeps_shape(a, b, to) || !self.keeps_shape(b, a, to) {
             return false;
@@ -221,6 +211,21 @@ impl Surface {
             self.changed[corner as usize] = true;
         }
         true
+    }
+
+    /// Returns the place of the corner that replaces two: the best of theirs and their middle, if it deviates little enough.
+    fn place(&self, a: u32, b: u32, sum: &Quadric, allowed: f64) -> Option<[f32; 3]> {
+        let (p, q) = (self.point(a), self.point(b));
+        let mut best: Option<(f64, [f32; 3])> = None;
+        for place in [0.5 * (p + q), p, q] {
+            #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
+            let rounded = place.to_array().map(|x| x as f32);
+            let error = sum.error(DVec3::from_array(rounded.map(f64::from)));
+            if error <= allowed && best.is_none_or(|(least, _)| error < least) {
+                best = Some((error, rounded));
+            }
+        }
+        best.map(|(_, place)| place)
     }
 
     /// Whether the triangles around a corner, without those that it shares with `other`, keep their side and some height when it
