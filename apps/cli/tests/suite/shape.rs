@@ -93,7 +93,7 @@ fn edits_that_do_the_same_are_told_in_one_line() {
     fs::write(f.join("e.json"), format!("{{\"schema\": \"burgeon.edits/1\", \"edits\": [{edits}]}}"))
         .unwrap();
     let out = burgeon(&f, &["shape", "small.toml", "--edits", "e.json", "-o", "x.glb", "--no-textures"]);
-    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    let said = String::from_utf8_lossy(&out.stdout).into_owned();
     let lines: Vec<&str> = said.lines().filter(|l| l.starts_with("edit")).collect();
     assert!(out.status.success() && lines.len() == 2, "{said}");
     assert!(lines[0].starts_with("edits 0 to 19, each: ") && lines[1].starts_with("edit 20: "), "{said}");
