@@ -89,9 +89,8 @@ pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
 /// Returns the kind that the first bytes indicate, if any.
 pub(crate) fn sniff(start: &[u8]) -> Option<Kind> {
     let drawing = DrawingFormat::sniff(start).map(Kind::Drawing);
-    // Other programs keep archives, too.
-    let other = Foreign::sniff(start).is_some_and(|f| !matches!(f, Foreign::Project | Foreign::Zip));
-    let project = (document::is_project(start) && !other).then_some(Kind::Project);
+    // Other programs keep archives, too; a project that was packed anew is known by its name.
+    let project = (Foreign::sniff(start) == Some(Foreign::Project)).then_some(Kind::Project);
     let structure = || StructureFormat::sniff(start).map(Kind::Structure);
     drawing.or_else(|| ModelFormat::sniff(start).map(Kind::Model)).or_else(structure).or(project)
 }

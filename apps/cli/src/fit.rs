@@ -207,7 +207,8 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         tell_laws(law);
         fitted.trials.iter().flatten().for_each(tell_trial);
         report.groups.iter().for_each(|g| say::line(&g.line()));
-        say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
+        let laws = say::counted(law.laws.len() as u64, "law", "laws");
+        say::line(&format!("{}: {laws}", args.output.display()));
     }
     Ok(())
 }

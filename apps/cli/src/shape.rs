@@ -10,9 +10,9 @@ use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    BranchRow, FlowerOptions, ItemReport, LevelSpec, Levels, MadePlant, MadeTree, Preset, Report, RunReport,
-    Seed, Stopped, StructureModel, StructureOptions, TreeError, TreeOptions, branch_rows, edits_schema,
-    edits_template, make_flower, make_tree,
+    BranchRow, EditReport, FlowerOptions, ItemReport, LevelSpec, Levels, MadePlant, MadeTree, Preset, Report,
+    RunReport, Seed, Stopped, StructureModel, StructureOptions, TreeError, TreeOptions, branch_rows,
+    edits_schema, edits_template, make_flower, make_tree,
 };
 
 use crate::args::{PlantFormat, Seen, ShapeArgs, StructureArgs};
@@ -106,9 +106,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     if !machine.quiet {
         let item = &run.items[0];
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
-        for edit in item.edits.iter().filter(|e| e.done) {
-            say::line(&format!("edit {}: {}", edit.index, edit.said));
-        }
+        edit_lines(&item.edits).iter().for_each(|line| say::line(line));
         say::line(&report::summary(item, args.png.as_deref()));
         run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
     }
@@ -117,6 +115,17 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         Some(_) if !args.common.json => list(&run.items[0].branches),
         _ => Ok(()),
     }
+}
+
+/// Returns a line for each edit that was done; one for all that follow one another and did the same.
+fn edit_lines(edits: &[EditReport]) -> Vec<String> {
+    let done: Vec<&EditReport> = edits.iter().filter(|e| e.done).collect();
+    let alike = |a: &&EditReport, b: &&EditReport| a.said == b.said && a.index + 1 == b.index;
+    let line = |same: &[&EditReport]| match same {
+        [first, .., last] => format!("edits {} to {}, each: {}", first.index, last.index, first.said),
+        _ => same.iter().map(|e| format!("edit {}: {}", e.index, e.said)).collect(),
+    };
+    done.chunk_by(alike).map(line).collect()
 }
 
 /// Fails on unused options.

@@ -178,6 +178,8 @@ impl ExportArgs {
         )?;
         let textured = holds(Room::Textures);
         given.only_if(textured, &["impostor"], "models with textures", "none is made")?;
+        let sized = textured || picture || !paints;
+        given.only_if(sized, &["textures"], "models and pictures with textures", "none is made")?;
         let painted = (textured || picture) && paints;
         given.only_if(painted, &["foliage"], "models and pictures with textures", "none is made")?;
         let by_level = self.foliage == Some(FoliageWord::ByLevel);

@@ -75,6 +75,8 @@ impl Given {
         let colours = ["textures", "no_textures", "materials", "petals", "variation"];
         let none = "neither a model nor a picture is made";
         self.only_if(seen.model.is_some() || seen.picture, &colours, "models and pictures", none)?;
+        let coloured = seen.picture || seen.model != Some(ModelFormat::Stl);
+        self.only_if(coloured, &colours, "models with colours, and pictures", "STL has none")?;
         let counted = seen.model.is_some() || seen.picture || seen.report;
         self.only_if(counted, &["detail", "sides"], "models, pictures and reports", "none is made")?;
         self.only_if_holds(seen.model.is_some_and(|f| f.holds(Room::Wind)), &["wind"], Room::Wind)

@@ -249,3 +249,19 @@ fn a_print_is_one_closed_body_on_a_flat_foot() {
     assert!(refused.contains("at least") && refused.contains("mm"), "{refused}");
     assert!(bad(&dir, &["sketch", OAK, "-o", "x.stl", "--print-wall", "1"]).contains("--for print"));
 }
+
+#[test]
+fn colours_are_not_asked_of_formats_without_any() {
+    let dir = folder("colourless");
+    for option in [["--textures", "64"], ["--textures", "off"], ["--variation", "0.1"], ["--petals", "blue"]]
+    {
+        let all = [&["sketch", OAK, "-o", "x.stl"], &option[..]].concat();
+        assert!(bad(&dir, &all).contains("STL has none"), "{option:?}");
+    }
+    let refused = bad(&dir, &["sketch", OAK, "-o", "x.ply", "--textures", "64"]);
+    assert!(refused.contains("models and pictures with textures"), "{refused}");
+    // What textures show on average is a colour of each vertex.
+    good(&dir, &["sketch", OAK, "-o", "x.ply", "-q"]);
+    good(&dir, &["sketch", OAK, "-o", "y.ply", "-q", "--textures", "off"]);
+    assert!(fs::read(dir.join("x.ply")).unwrap() != fs::read(dir.join("y.ply")).unwrap());
+}

@@ -5,7 +5,7 @@ use crate::tools;
 use std::fs;
 
 use serde_json::Value;
-use tools::{bad, folder, good};
+use tools::{bad, burgeon, folder, good};
 
 const EDITS: &str = r#"{"schema": "burgeon.edits/1", "edits": [
   {"op": "rotate", "axis": {"path": [0, 1]}, "turn": {"about": [0, 1, 0], "degrees": 40}},
@@ -80,6 +80,23 @@ fn branches_are_listed_and_the_template_is_an_edits_file() {
     good(&f, &["shape", "--schema", "schema.json"]);
     let schema: Value = serde_json::from_str(&fs::read_to_string(f.join("schema.json")).unwrap()).unwrap();
     assert!(schema.to_string().contains("silhouette"));
+}
+
+#[test]
+fn edits_that_do_the_same_are_told_in_one_line() {
+    let f = folder("shape-same");
+    fs::write(f.join("small.toml"), "[method]\nkind = \"competition\"\npoints = 300").unwrap();
+    let copy =
+        r#"{"op": "copy", "axis": {"path": [0, 0]}, "to": {"place": {"axis": {"path": [0]}, "at": 0.5}}}"#;
+    let prune = r#"{"op": "prune", "axis": {"path": [0, 0]}}"#;
+    let edits = [[copy; 20].join(", "), prune.to_owned()].join(", ");
+    fs::write(f.join("e.json"), format!("{{\"schema\": \"burgeon.edits/1\", \"edits\": [{edits}]}}"))
+        .unwrap();
+    let out = burgeon(&f, &["shape", "small.toml", "--edits", "e.json", "-o", "x.glb", "--no-textures"]);
+    let said = String::from_utf8_lossy(&out.stdout).into_owned();
+    let lines: Vec<&str> = said.lines().filter(|l| l.starts_with("edit")).collect();
+    assert!(out.status.success() && lines.len() == 2, "{said}");
+    assert!(lines[0].starts_with("edits 0 to 19, each: ") && lines[1].starts_with("edit 20: "), "{said}");
 }
 
 #[test]

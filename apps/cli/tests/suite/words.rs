@@ -242,7 +242,7 @@ fn files_of_other_programs_are_named() {
             if end == "ply" {
                 uses.push(vec!["render", &file, "-o", "x.png"]);
             }
-            if end == own && !drawn && !packed {
+            if end == own && !drawn && own != "gz" {
                 uses.push(vec!["sketch", &file, "-o", "x.glb"]);
                 uses.push(vec!["render", &file, "-o", "x.png"]);
                 uses.push(vec!["convert", &file, "-o", "x.ply"]);
