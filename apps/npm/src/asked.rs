@@ -146,13 +146,13 @@ impl TreeAsked {
             ("age", age.is_some()),
         ];
         let given: Vec<&str> = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
-        if self.height.is_some() || self.dbh.is_some() {
-            if let [first, second, ..] = given[..] {
-                return Err(Refused::unused(
-                    second,
-                    format!("{first} and {second} exclude each other: give one"),
-                ));
-            }
+        if (self.height.is_some() || self.dbh.is_some())
+            && let [first, second, ..] = given[..]
+        {
+            return Err(Refused::unused(
+                second,
+                format!("{first} and {second} exclude each other: give one"),
+            ));
         }
         if let Some(height) = self.height {
             return number("height", height, TreeGoal::HEIGHTS_M).map(TreeGoal::Height).map(Some);
