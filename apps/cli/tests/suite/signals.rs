@@ -27,7 +27,7 @@ const SOON: Duration = Duration::from_secs(1);
 const LATEST: Duration = Duration::from_millis(1500);
 
 /// Commands that are interrupted: arguments, in which `in/` names inputs. All files are written below `out`.
-const COMMANDS: [&[&str]; 21] = [
+const COMMANDS: [&[&str]; 20] = [
     &["sketch", "in/sample.svg", "-o", "out/s.obj", "--png", "out/s.png", "--report", "out/s.json"],
     &["sketch", "in/a.svg", "in/b.svg", "in/c.svg", "in/d.svg", "in/e.svg", "-o", "out/", "--png", "out/"],
     &[
@@ -54,18 +54,6 @@ const COMMANDS: [&[&str]; 21] = [
     &["info", "in/tree.glb", "--report", "out/i.json"],
     &["bloom", "run", "tulip", "-o", "out", "--frames", "6", "--report", "out/b.json"],
     &["bloom", "fit", "in/growth.csv", "-o", "out/f.json", "--plot", "out/f.svg", "--report", "out/r.json"],
-    &[
-        "species",
-        "fit",
-        "in/t0.csv",
-        "in/t1.csv",
-        "-o",
-        "out/s.toml",
-        "--trees",
-        "20",
-        "--report",
-        "out/r.json",
-    ],
     &["studio", "in/sample.svg", "--folder", "in/page", "--no-open"],
     &["presets", "--show", "oak"],
     &["man", "out"],
@@ -90,9 +78,6 @@ fn inputs(dir: &Path) {
     }
     fs::write(dir.join("hands.json"), replay::record(12)).unwrap();
     good(dir, &["grow", "hazel", "-o", "tree.glb", "-q"]);
-    for seed in ["0", "1"] {
-        good(dir, &["grow", "hazel", "--qsm", &format!("t{seed}.csv"), "--seed", seed, "-q"]);
-    }
     assert!(Command::new("mkfifo").arg(dir.join("pipe.stl")).status().unwrap().success(), "mkfifo");
     let mut points = String::new();
     // A stem and four limbs.
