@@ -280,7 +280,7 @@ mod tests {
             let (sin, cos) = base::ops::sin_cos(base::ops::PI * f64::from(ring) / f64::from(n));
             for k in 0..2 * n {
                 let (s, c) = base::ops::sin_cos(base::ops::PI * f64::from(k) / f64::from(n));
-                mesh.positions.push([sin * c, cos, sin * s].map(|x| x as f32));
+                mesh.positions.push(DVec3::new(sin * c, cos, sin * s).as_vec3().to_array());
             }
         }
         for k in 0..2 * n {
