@@ -42,8 +42,10 @@ struct CupLimits {
     seen: f64,
     /// Petals cover more than this share of the head; the rest are leaves that float or bracts.
     most: f64,
-    /// The halves of the head left and right of its base differ by less than this share of it.
+    /// The halves of the head left and right of its base differ by less than this share of it,
     lopsided: f64,
+    /// or by less than this without a stem.
+    stemless_lopsided: f64,
     /// A single face has no corner in its lower half except within this distance of its base,
     low_corner: f64,
     /// and has at least this convexity,
@@ -75,6 +77,7 @@ const CUP: CupLimits = CupLimits {
     seen: 0.4,
     most: 0.6,
     lopsided: 0.35,
+    stemless_lopsided: 0.2,
     low_corner: 0.3,
     whole_convex: 0.7,
     most_notches: 3,
@@ -127,7 +130,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         geom::signed_area(&half).abs()
     };
     let (right, left) = (side(1.0), side(-1.0));
-    if (right - left).abs() > CUP.lopsided * (right + left) {
+    let lopsided = if stem.is_some() { CUP.lopsided } else { CUP.stemless_lopsided };
+    if (right - left).abs() > lopsided * (right + left) {
         return None;
     }
     let (petals, in_front) = match faces.len() {
