@@ -215,6 +215,12 @@ pub(crate) struct Sky {
     map_size: usize,
 }
 
+/// A lamp of the sky: what lies open to it, and its light.
+struct Lamp {
+    map: DepthMap,
+    light: DVec3,
+}
+
 impl Sky {
     pub(crate) fn new(scene: &Scene, spec: &PictureSpec, run: &Run<'_>) -> Result<Self, Cancelled> {
         let turn = spec.seed.stream(Draw::Sampling).range(0.0, ops::TAU);
@@ -239,7 +245,10 @@ impl Sky {
             return Ok(sky);
         }
         let size = (map_size / 3).clamp(96, 256);
-        let maps = map_until_cancelled(run, SKY_LAMPS, |k| DepthMap::new(scene, directions[k], size))?;
+        let lamps = map_until_cancelled(run, SKY_LAMPS, |k| Lamp {
+            map: DepthMap::new(scene, directions[k], size),
+            light: radiance(directions[k], spec.skylight),
+        })?;
         const CHUNK: usize = 1024;
         let chunks = map_until_cancelled(run, scene.vertices.len().div_ceil(CHUNK), |k| {
             let end = ((k + 1) * CHUNK).min(scene.vertices.len());
@@ -247,25 +256,24 @@ impl Sky {
                 .iter()
                 .map(|v| {
                     let mut both = [DVec3::ZERO; 2];
-                    for map in &maps {
+                    for Lamp { map, light } in &lamps {
                         let c = v.normal.dot(map.toward);
                         let lit = map.lit_surface(v.at, v.normal);
-                        both[usize::from(c < 0.0)] +=
-                            radiance(map.toward, spec.skylight) * (c.abs() * lit * share);
+                        both[usize::from(c < 0.0)] += *light * (c.abs() * lit * share);
                     }
                     both
                 })
                 .collect::<Vec<_>>()
         })?;
         sky.vertices = chunks.into_iter().flatten().collect();
-        sky.light_ground(scene, &maps, share, run)?;
+        sky.light_ground(scene, &lamps, share, run)?;
         Ok(sky)
     }
 
     fn light_ground(
         &mut self,
         scene: &Scene,
-        maps: &[DepthMap],
+        lamps: &[Lamp],
         share: f64,
         run: &Run<'_>,
     ) -> Result<(), Cancelled> {
@@ -279,11 +287,10 @@ impl Sky {
                 .map(|column| {
                     let at = self.ground_low + self.ground_cell * DVec2::new(column as f64, row as f64);
                     let p = DVec3::new(at.x, scene.ground, at.y);
-                    let above = maps.iter().filter(|m| m.toward.y > 0.0);
+                    let above = lamps.iter().filter(|lamp| lamp.map.toward.y > 0.0);
                     above
-                        .map(|m| {
-                            let light = m.toward.y * share * m.lit_surface(p, DVec3::Y);
-                            radiance(m.toward, self.skylight) * light
+                        .map(|Lamp { map, light }| {
+                            *light * (map.toward.y * share * map.lit_surface(p, DVec3::Y))
                         })
                         .sum::<DVec3>()
                 })
