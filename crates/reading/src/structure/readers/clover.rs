@@ -15,14 +15,16 @@ struct CloverLimits {
     alike: f64,
     /// They begin within this share of their length from one place.
     meet: f64,
-    /// A leaflet is a heart if a notch lies farther from where they meet than this share of its length.
+    /// A leaflet is a heart if a notch lies farther from where they meet than this share of its length,
     notch: f64,
+    /// in the direction of its own middle: this is the least cosine of the angle between both.
+    opposite: f64,
     /// See [`Proposal::likelihood`].
     likelihood: f64,
 }
 
 const CLOVER: CloverLimits =
-    CloverLimits { leaflets: 3..=4, alike: 0.45, meet: 0.3, notch: 0.55, likelihood: 1e7 };
+    CloverLimits { leaflets: 3..=4, alike: 0.45, meet: 0.3, notch: 0.55, opposite: 0.985, likelihood: 1e7 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let faces = &scene.faces;
@@ -34,7 +36,12 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let is_leaflet = |f: &super::Face| {
         let (_, off) = nearest_on_ring(&f.outline, middle);
         let long = f.outline.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
-        let heart = f.shape.notches.iter().any(|n| n.distance(middle) > CLOVER.notch * long);
+        let along = (f.shape.middle - middle).normalize_or_zero();
+        let is_opposite = |n: &DVec2| {
+            n.distance(middle) > CLOVER.notch * long
+                && (*n - middle).normalize_or_zero().dot(along) > CLOVER.opposite
+        };
+        let heart = f.shape.notches.iter().any(is_opposite);
         f.shape.area > CLOVER.alike * largest && off < CLOVER.meet * long && heart
     };
     if !faces.iter().all(is_leaflet) {
