@@ -18,8 +18,8 @@ macro_rules! presets {
     (@same) => { None };
     (@same $key:literal) => { Some($key) };
     ($($key:literal $(is $same:literal)?),* $(,)?) => {
-        /// Every preset, those of Yang et al. (2019) first.
-        pub const PRESETS: &[Preset] = &[$(Preset {
+        /// Every preset, those of Yang et al. (2019) first. No constant: each crate that names one has a copy of its own.
+        pub static PRESETS: &[Preset] = &[$(Preset {
             key: $key,
             toml: include_str!(concat!("../../presets/", $key, ".toml")),
             same_as: presets!(@same $($same)?),
