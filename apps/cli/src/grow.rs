@@ -126,16 +126,16 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
 fn set_age(args: &GrowArgs, spec: &mut TreeSpec, seed: Seed, machine: &Machine) -> Outcome<Option<f64>> {
     let free = spec.obstacles.is_empty();
     args.given.only_if(free, &["height", "dbh"], "trees without obstacles", "this one would meet its own")?;
-    let fail = |spec: &TreeSpec, option: &str, e: HeightError| match e {
-        HeightError::Tree(e) => failure(args, spec, e),
-        e => Failure::bad_file(Path::new(&named(args)), format_args!("{option}: {e}")),
-    };
-    let (option, goal) = match (args.growth.height, args.growth.dbh) {
-        (_, Some(dbh)) => ("--dbh", TreeGoal::Dbh(dbh)),
-        (Some(height), None) => ("--height", TreeGoal::Height(height)),
+    let goal = match (args.growth.height, args.growth.dbh) {
+        (_, Some(dbh)) => TreeGoal::Dbh(dbh),
+        (Some(height), None) => TreeGoal::Height(height),
         (None, None) => return Ok(None),
     };
-    aim_at(spec, seed, goal, &machine.run()).map(Some).map_err(|e| fail(spec, option, e))
+    let fail = |spec: &TreeSpec, e: HeightError| match e {
+        HeightError::Tree(e) => failure(args, spec, e),
+        e => Failure::bad_file(Path::new(&named(args)), format_args!("--{}: {e}", goal.word())),
+    };
+    aim_at(spec, seed, goal, &machine.run()).map(Some).map_err(|e| fail(spec, e))
 }
 
 /// Fails on unused options.

@@ -64,7 +64,7 @@ pub fn grow(asked: &str, seed: u64) -> Result<GrowingTree, Refused> {
             let height = asked.common.computed(|run| burgeon::aim_at(&mut spec, seed, goal, run))?;
             Some(height.map_err(|e| match e {
                 HeightError::Tree(e) => refused(&e),
-                e => Refused::plain("height", e.to_string()),
+                e => Refused::plain(goal.word(), format!("{}: {e}", goal.word())),
             })?)
         }
         None => asked.height_m.map(|h| asked::number("height_m", h, (0.001, 1000.0))).transpose()?,

@@ -88,7 +88,7 @@ pub(crate) fn grow(
             let height = compute(py, budget, |run| burgeon::aim_at(&mut spec, seed, goal, run))?;
             Some(height.map_err(|e| match e {
                 HeightError::Tree(e) => refused(py, &e),
-                e => unusable(py, &e),
+                e => unusable(py, &format_args!("{}: {e}", goal.word())),
             })?)
         }
     };

@@ -102,7 +102,7 @@ def uses(files):
         "wind": True,
     }
     grove = {"spacing": 2.0, "kinds": 1, "vary": 0.5}
-    grow = tree(leaf=one_leaf)
+    grow = tree(leaf=one_leaf, height=3.0, dbh=0.05)
     return [
         ("grow", bg.grow, (SMALL,), {}, grow),
         ("grow, of a species", bg.grow, ("grass",), {"age": 1}, grow),
@@ -203,6 +203,8 @@ def test_no_argument_of_files_is_ignored(tmp_path):
         "pack": "quantized",
         "sway": True,
         "engine": "isaac",
+        "triangles": 600,
+        "megabytes": 0.02,
     }
     assert sorted(how) == sorted(named(bg.Plant.save))
     ignored = []

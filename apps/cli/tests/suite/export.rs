@@ -204,6 +204,8 @@ fn a_tree_has_the_height_that_is_asked_for_within_its_species() {
     assert!((dbh - 0.1).abs() < 0.01, "{dbh}");
     let far = bad(&dir, &["grow", "birch", "--dbh", "3", "--json"]);
     assert!(far.contains("breast height is out of reach") && far.contains("--dbh"), "{far}");
+    let low = bad(&dir, &["grow", "grass", "--dbh", "0.05", "--json"]);
+    assert!(low.contains("below breast height") && low.contains("--dbh"), "{low}");
     let latin = items(&dir, &["grow", "corylus avellana", "--age", "3", "--detail", "0.2"]);
     let hazel = items(&dir, &["grow", "hazel", "--age", "3", "--detail", "0.2"]);
     assert_eq!(latin[0]["digest"], hazel[0]["digest"]);

@@ -34,6 +34,11 @@ pub enum HeightError {
         /// The most, metres.
         most_m: f64,
     },
+    /// It never reaches breast height.
+    #[error(
+        "a plant of this species stays below breast height (1.3 m), where a diameter is measured: give its height"
+    )]
+    Low,
     /// It grows around obstacles, which it would meet when it is scaled.
     #[error(
         "a tree with obstacles has no height or diameter to grow to, as it would meet them: give its age"
@@ -66,6 +71,14 @@ impl TreeGoal {
     pub const HEIGHTS_M: (f64, f64) = (0.01, 1000.0);
     /// Range of diameters in requests, metres.
     pub const DIAMETERS_M: (f64, f64) = (0.001, 30.0);
+
+    /// Returns the word of its option.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Height(_) => "height",
+            Self::Dbh(_) => "dbh",
+        }
+    }
 }
 
 /// Sets the age at which a tree is nearest to a size; returns the height to which it is then scaled
@@ -111,6 +124,9 @@ pub fn tree_of_dbh(spec: &TreeSpec, seed: Seed, dbh_m: f64, run: &Run<'_>) -> Re
         Ok((grown.plant.measure().dbh_m.unwrap_or(0.0), tree_size(&grown).height_m))
     };
     let full = at(None)?;
+    if full.0 <= 0.0 {
+        return Err(HeightError::Low);
+    }
     let mut old = (spec.years.unwrap_or(0), full);
     let mut young = (1, if spec.years.is_some() { at(Some(1))? } else { full });
     if spec.years.is_some() && dbh_m < full.0 {
