@@ -147,7 +147,11 @@ async function gizmos({ page, url, shot }) {
     const at = await field(page, key);
     assert.ok(Math.abs(at / 0.25 - Math.round(at / 0.25)) < 1e-6, `${key} is ${at}`);
   }
-  await eventually(() => undone(page), (title) => /place/.test(title), 'the drag is a step');
+  await eventually(
+    () => undone(page),
+    (title) => /place/.test(title),
+    'the drag is a step',
+  );
 }
 
 /** A plant that is dragged goes as far as the pointer does on the ground, and its shadow with it. */
@@ -286,7 +290,11 @@ async function groups({ page, url, shot }) {
   await page.keyboard.press('g');
   await loaded(page, 'gizmo');
   await pull(page, 60);
-  await eventually(() => undone(page), (title) => /place/.test(title), 'the handle moves them');
+  await eventually(
+    () => undone(page),
+    (title) => /place/.test(title),
+    'the handle moves them',
+  );
   await page.keyboard.press('Escape');
   await rested(page);
   await shot('grove-group');
