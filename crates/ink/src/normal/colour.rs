@@ -11,6 +11,10 @@ const STANDS_OUT: f64 = 0.04;
 const PART_INSIDE: f64 = 0.35;
 /// and if the other one is this many times larger: dots side by side are alike.
 const MUCH_LARGER: f64 = 2.0;
+/// Most areas times sub-paths of areas for which parts and tones are looked for.
+const MOST_MERGED: usize = 1 << 16;
+/// Most points of an outline in which parts are looked for.
+const ROUND: usize = 512;
 /// Number of points of an area that are compared with an outline.
 const COMPARED: usize = 32;
 /// An area under an outline has at least this share of its box.
@@ -68,32 +72,17 @@ impl Work {
         let outlines = self.outlines();
         let areas: Vec<&Outline> = outlines.iter().filter(|o| is_area(&self.figures[o.figure])).collect();
         let lines: usize = areas.iter().map(|a| self.figures[a.figure].lines.len()).sum();
-        if areas.len() * lines > LIMITS.pairs {
+        if areas.len() * lines > MOST_MERGED {
             return;
         }
         let slack = STANDS_OUT * self.diagonal();
-        let look = |k: usize| self.figures[k].fill.map(|f| (f.color, f.opacity));
-        let color = |k: usize| self.figures[k].fill.and_then(|f| f.color);
+        let coarse: Vec<Vec<DVec2>> = areas.iter().map(|a| some_of(&a.points, ROUND).collect()).collect();
         let (mut parts, mut tones) = (self.none_out(), self.none_out());
         for part in &areas {
-            let figure = &self.figures[part.figure];
-            let larger = || areas.iter().filter(|w| w.figure != part.figure && w.area > part.area);
-            let is_part_of = |whole: &&&Outline| {
-                whole.area > MUCH_LARGER * part.area
-                    && look(whole.figure) == look(part.figure)
-                    && figure.lines.iter().all(|line| lies_in(line, whole, slack))
-                    && share(&places(&figure.lines.concat()), |p| geom::contains(&whole.points, p))
-                        > PART_INSIDE
-            };
-            let is_tone_of = |below: &&&Outline| {
-                let colors = color(part.figure).zip(color(below.figure));
-                below.figure < part.figure
-                    && colors.is_some_and(|(own, below)| is_tint(own, below))
-                    && self.is_shade(part, below)
-            };
-            if color(part.figure).is_some() && larger().any(|w| is_part_of(&w)) {
+            let larger = || areas.iter().zip(&coarse).filter(|(whole, _)| whole.area > part.area);
+            if larger().any(|(whole, outline)| self.is_part_of(part, (whole, outline), slack)) {
                 parts[part.figure].fill(true);
-            } else if larger().any(|w| is_tone_of(&w)) {
+            } else if larger().any(|(below, _)| self.is_tone_of(part, below)) {
                 tones[part.figure].fill(true);
             }
         }
@@ -102,6 +91,34 @@ impl Work {
             self.note(Change::DrawnTwice, merged);
             self.note(Change::Shade, shades);
         }
+    }
+
+    /// Whether an area cannot be told from a larger one of its colour, of which `outline` has some points.
+    fn is_part_of(&self, part: &Outline, (whole, outline): (&Outline, &[DVec2]), slack: f64) -> bool {
+        let look = |o: &Outline| self.figures[o.figure].fill.map(|f| (f.color, f.opacity));
+        let has_colour = look(part).is_some_and(|(color, _)| color.is_some());
+        let lines = &self.figures[part.figure].lines;
+        let is_held =
+            |line: &Vec<InkSample>| Extent::from_line(line).is_some_and(|e| whole.extent.holds(e, slack));
+        if !has_colour
+            || look(part) != look(whole)
+            || whole.area < MUCH_LARGER * part.area
+            || !lines.iter().all(is_held)
+        {
+            return false;
+        }
+        let points: Vec<DVec2> =
+            lines.iter().flat_map(|line| some_of(&places(line), COMPARED).collect::<Vec<_>>()).collect();
+        let off = |p: DVec2| geom::closest_on_polyline(outline, p).map_or(0.0, |c| c.point.distance(p));
+        share(&points, |p| geom::contains(outline, p)) > PART_INSIDE
+            && points.iter().all(|&p| geom::contains(outline, p) || off(p) <= slack)
+    }
+
+    /// Whether an area is a tone of one that was painted before it.
+    fn is_tone_of(&self, part: &Outline, below: &Outline) -> bool {
+        let color = |o: &Outline| self.figures[o.figure].fill.and_then(|f| f.color);
+        let is_tone = color(part).zip(color(below)).is_some_and(|(own, below)| is_tint(own, below));
+        below.figure < part.figure && is_tone && self.is_shade(part, below)
     }
 
     /// Gives lines the colour of the areas under them and removes these; removes areas within others that shade them.
@@ -212,16 +229,6 @@ fn is_tint(own: [u8; 3], below: [u8; 3]) -> bool {
     let [(a, own_span), (b, below_span)] = [own, below].map(hue);
     let apart = (a - b).abs();
     own_span.min(below_span) >= HUED && apart.min(360.0 - apart) < SAME_HUE || is_pale(own) && is_pale(below)
-}
-
-/// Whether a line lies in an outline, or nowhere farther from it than `slack`.
-fn lies_in(line: &[InkSample], whole: &Outline, slack: f64) -> bool {
-    let is_held = Extent::from_line(line).is_some_and(|e| whole.extent.holds(e, slack));
-    let is_in = |p: DVec2| {
-        geom::contains(&whole.points, p)
-            || geom::closest_on_polyline(&whole.points, p).is_some_and(|c| c.point.distance(p) <= slack)
-    };
-    is_held && line.iter().all(|s| is_in(s.at))
 }
 
 /// Returns what is left out by one or the other.
