@@ -277,6 +277,8 @@ async function list({ page, url, shot }) {
   await page.locator('.shelf li:has([aria-current=true]) [data-act=delete]').click();
   await until(page, 'strokes', ['is', 0], 'another one is here');
   await page.locator('[data-back]').click();
+  // The list is made anew, in another order.
+  await page.locator('.shelf-gone').waitFor({ state: 'hidden' });
   await page.locator('.shelf-open', { hasText: 'A rose (copy)' }).click();
   await until(page, 'strokes', ['is', 15], 'and back');
   await reloaded(page);
