@@ -35,6 +35,8 @@ struct HeadLimits {
     rays: u32,
     /// if the disc covers between these shares of its area.
     ray_disc: core::ops::Range<f64>,
+    /// Points along the outline of a ray, up one side and down the other: shares of its angle and of the head's reach.
+    ray: [[f64; 2]; 5],
     /// Least height and width, ink units.
     size: f64,
     /// Its stem goes on below it by more than this share of its height.
@@ -67,6 +69,7 @@ const HEAD: HeadLimits = HeadLimits {
     circle: 0.9,
     rays: 12,
     ray_disc: 0.04..0.5,
+    ray: [[0.08, 0.6], [0.18, 0.9], [0.5, 1.0], [0.82, 0.9], [0.92, 0.6]],
     size: 0.2,
     stem: 0.3,
     potted_stem: 0.1,
@@ -137,7 +140,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
 /// Cuts a round head with a round disc in its middle into rays.
 fn rays(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
     let is_circle = |f: &Face| f.shape.slenderness > HEAD.circle && f.shape.convexity > HEAD.circle;
-    let inner = scene.faces.iter().enumerate().filter(|(k, _)| members.contains(k)).map(|(_, f)| f);
+    let inner = members.iter().map(|&k| &scene.faces[k]);
     let discs: Vec<&Face> = inner.filter(|f| f.shape.area < HEAD.ray_disc.end * head.shape.area).collect();
     let [disc] = discs[..] else { return None };
     let middle = head.shape.middle;
@@ -149,26 +152,13 @@ fn rays(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
         && members.len() == 2;
     let step = base::ops::TAU / f64::from(HEAD.rays);
     let ray = |k: u32| {
-        let direction = |angle: f64| {
-            let (sin, cos) = base::ops::sin_cos(angle);
-            DVec2::new(cos, sin)
+        let point = |[turn, far]: [f64; 2]| {
+            let (sin, cos) = base::ops::sin_cos((f64::from(k) + turn) * step);
+            middle + DVec2::new(cos, sin) * (reach * far)
         };
-        let way = |turn: f64| direction((f64::from(k) + turn) * step);
-        let tip = |turn: f64, far: f64| middle + way(turn) * (reach * far);
-        Part {
-            points: vec![
-                middle,
-                tip(0.08, 0.6),
-                tip(0.18, 0.9),
-                tip(0.5, 1.0),
-                tip(0.82, 0.9),
-                tip(0.92, 0.6),
-                middle,
-            ],
-            class: StrokeClass::Blade,
-            root: Some(middle),
-            strokes: head.strokes.clone(),
-        }
+        let outline = core::iter::once(middle).chain(HEAD.ray.map(point)).chain([middle]);
+        let strokes = head.strokes.clone();
+        Part { points: outline.collect(), class: StrokeClass::Blade, root: Some(middle), strokes }
     };
     is_rayed.then(|| {
         let mut parts: Vec<Part> = (0..HEAD.rays).map(ray).collect();
@@ -191,12 +181,9 @@ fn lobes(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
         return None;
     }
     let is_central = |p: DVec2| p.distance(middle) < HEAD.disc * reach;
-    let inner = scene
-        .faces
-        .iter()
-        .enumerate()
-        .filter(|(k, f)| members.contains(k) && f.shape.area < HEAD.disc_area * head.shape.area);
-    let discs = inner.map(|(_, f)| f.shape.middle).filter(|p| is_central(*p));
+    let inner = members.iter().map(|&k| &scene.faces[k]);
+    let small = inner.filter(|f| f.shape.area < HEAD.disc_area * head.shape.area);
+    let discs = small.map(|f| f.shape.middle).filter(|p| is_central(*p));
     // The end of the outline itself is no disc.
     let is_own = |run: &&Run| head.strokes.contains(&run.stroke);
     let marks = scene.marks.iter().filter(|(face, _)| members.contains(face)).map(|(_, run)| run);
