@@ -28,6 +28,8 @@ pub struct ConfidenceLimits {
     /// Greatest confidence in a tangle of bare lines ([`crate::tangled_length`]): of 49 in line art by people one is
     /// right.
     pub tangle_most: f64,
+    /// Confidence in a reading by masses: of six in line art by people five show the kind of plant, but none all of it.
+    pub by_masses: f64,
     /// Confidence in a drawing of so many strokes that the model compares no kinds: both such drawings among the line
     /// art by people are read wrongly.
     pub not_weighed: f64,
@@ -47,6 +49,7 @@ pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
     by_structure_of_many: 0.65,
     by_arrangement_least: 0.8,
     tangle_most: 0.05,
+    by_masses: 0.25,
     not_weighed: 0.35,
     explained_least: 0.8,
     guess_most: 0.35,
@@ -71,6 +74,8 @@ pub struct Evidence {
     pub by_arrangement: bool,
     /// Whether most of its axes lead to nothing.
     pub is_tangle: bool,
+    /// Whether it was read by its masses, since its lines are a tangle.
+    pub by_masses: bool,
     /// Whether it is a tree, palm or bush: the model has seen all forms of these kinds, so its share counts whatever
     /// the structure says.
     pub is_wood: bool,
@@ -98,6 +103,9 @@ impl Evidence {
         let limits = CONFIDENCE_LIMITS;
         if self.is_tangle {
             return chance.min(limits.tangle_most);
+        }
+        if self.by_masses {
+            return limits.by_masses;
         }
         let is_many = self.strokes >= limits.many_strokes;
         if is_many && self.explained < limits.explained_least {
@@ -152,6 +160,7 @@ mod tests {
             by_structure: false,
             by_arrangement: false,
             is_tangle: false,
+            by_masses: false,
             is_wood: false,
             explained: 1.0,
         };
@@ -176,6 +185,7 @@ mod tests {
             by_structure: true,
             by_arrangement: false,
             is_tangle: false,
+            by_masses: false,
             is_wood: false,
             explained: 1.0,
         };

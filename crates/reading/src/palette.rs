@@ -50,6 +50,15 @@ pub(crate) fn is_green_stroke(stroke: &InkStroke) -> bool {
     stroke.color.is_some_and(is_green)
 }
 
+/// Whether more than half of some strokes, by length, is green.
+pub(crate) fn is_mostly_green<'a>(strokes: impl Iterator<Item = &'a InkStroke>) -> bool {
+    let (mut green, mut other) = (0.0, 0.0);
+    for stroke in strokes {
+        *if is_green_stroke(stroke) { &mut green } else { &mut other } += stroke.length;
+    }
+    green > other
+}
+
 /// Whether a stroke has the colour of wood: brown, grey or black. It says nothing unless the drawing is painted.
 pub(crate) fn is_brown_stroke(stroke: &InkStroke) -> bool {
     stroke.color.is_some_and(may_be_wood)

@@ -38,6 +38,12 @@ impl Cells {
         self.wide * self.tall
     }
 
+    /// Returns the middle of a cell.
+    pub(crate) fn middle(&self, cell: usize) -> DVec2 {
+        let (x, y) = (cell % self.wide, cell / self.wide);
+        self.corner + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.size
+    }
+
     /// Returns the cell that contains a point; for a point beyond, the nearest cell.
     pub(crate) fn place(&self, p: DVec2) -> usize {
         let q = (p - self.corner) / self.size;
@@ -167,4 +173,49 @@ pub(crate) fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
             return Some(line);
         }
     }
+}
+
+/// Returns the distance of each cell from the nearest of the given cells, in cells: exact, in linear time (Felzenszwalb
+/// and Huttenlocher 2012, section 3). If there are none, it is greater than the picture.
+pub(crate) fn distances(cells: &Cells, from: &[bool]) -> Vec<f64> {
+    let far = ((cells.wide + cells.tall) as f64).powi(2);
+    let mut squares: Vec<f64> = from.iter().map(|f| if *f { 0.0 } else { far }).collect();
+    for x in 0..cells.wide {
+        let column: Vec<f64> = (0..cells.tall).map(|y| squares[y * cells.wide + x]).collect();
+        for (y, square) in lowest_parabola(&column).into_iter().enumerate() {
+            squares[y * cells.wide + x] = square;
+        }
+    }
+    for row in squares.chunks_exact_mut(cells.wide) {
+        row.copy_from_slice(&lowest_parabola(row));
+    }
+    squares.into_iter().map(f64::sqrt).collect()
+}
+
+/// Returns the least of `heights[i] + (x - i)^2` over all `i`, for each place `x`.
+fn lowest_parabola(heights: &[f64]) -> Vec<f64> {
+    let meets = |a: usize, b: usize| {
+        let (x, y) = (a as f64, b as f64);
+        ((heights[b] + y * y) - (heights[a] + x * x)) / (2.0 * (y - x))
+    };
+    // The parabolas that are lowest somewhere, each with the place from which on it is.
+    let mut lowest: Vec<(usize, f64)> = vec![(0, f64::NEG_INFINITY)];
+    for next in 1..heights.len() {
+        let mut from = meets(lowest[lowest.len() - 1].0, next);
+        while from <= lowest[lowest.len() - 1].1 {
+            lowest.pop();
+            from = meets(lowest[lowest.len() - 1].0, next);
+        }
+        lowest.push((next, from));
+    }
+    let mut at = 0;
+    let height = |x: usize, of: usize| heights[of] + (x as f64 - of as f64).powi(2);
+    (0..heights.len())
+        .map(|x| {
+            while lowest.get(at + 1).is_some_and(|next| next.1 < x as f64) {
+                at += 1;
+            }
+            height(x, lowest[at].0)
+        })
+        .collect()
 }

@@ -391,6 +391,18 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
+    let is_hatched =
+        asked.kind.is_none() && (ink.strokes.len() > MOST_JUDGED || tangled_length(&reading) > 0.0);
+    let masses = is_hatched.then(|| by_masses(asked, ink, classes)).flatten();
+    let is_of_masses = masses.is_some();
+    if let Some((tried, again)) = masses {
+        (reading, kind) = (tried, again);
+        report.warn(
+            "read-by-masses",
+            "most lines are shading: only the areas that they cover were read; if the plant is wrong, draw the \
+             outline of each organ with one line",
+        );
+    }
     // If a reader knows several bodies, they are not a single one.
     as_body(ink, kind, free && called.is_none(), &mut reading);
     let evidence = Evidence {
@@ -401,6 +413,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         by_structure: is_structural,
         by_arrangement: sure.is_some(),
         is_tangle: tangled_length(&reading) > 0.0,
+        by_masses: is_of_masses,
         is_wood: matches!(kind, Kind::Tree | Kind::Conifer | Kind::Palm | Kind::Bush),
         explained: explained(&facts, &reading),
     };
@@ -574,8 +587,11 @@ fn readings(kind: Kind, evidence: &Evidence, scores: &[Scored]) -> Vec<Scored> {
     let group = |k: Kind| share_of(scores, k) / total;
     // The model compares no kinds in a drawing of so many strokes.
     let is_weighed = scores.len() > 1;
-    let own =
-        if is_weighed { evidence.confidence() } else { CONFIDENCE_LIMITS.not_weighed.min(evidence.share) };
+    let own = if is_weighed || evidence.by_masses {
+        evidence.confidence()
+    } else {
+        CONFIDENCE_LIMITS.not_weighed.min(evidence.share)
+    };
     let left = (1.0 - own) / (1.0 - evidence.share).max(f64::MIN_POSITIVE);
     let mut found: Vec<Scored> = vec![Scored { kind, score: own }];
     for s in scores {
@@ -789,18 +805,32 @@ fn by_readers(
         .filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
     let mut proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
     let score = odds(&proposal) / (1.0 + odds(&proposal));
-    let composed = Composed::new(ink, &proposal);
-    let kept = RefCell::default();
-    let own = Asked { kind: Some(proposal.kind), kept: &kept, ..*asked };
-    let how =
-        Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
-    let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
-    let reading = composed.back(ink, parts);
+    let reading = composed(asked, ink, &proposal);
     // A fruit and a root are built alike: unless its word says which it is, the shares decide.
     if proposal.word.is_none() {
         proposal.kind = told_apart(proposal.kind, scores);
     }
     inertia::agrees(ink, classes, &reading).then_some((reading, proposal, score))
+}
+
+/// Returns the plant that the masses of a hatched drawing are, and its kind, if no class was set by hand.
+fn by_masses(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Option<(Reading, Kind)> {
+    if asked.off.contains(&READ_AS) || classes.iter().any(|c| c.source == Source::User) {
+        return None;
+    }
+    let proposal = structure::masses::propose(ink)?;
+    Some((composed(asked, ink, &proposal), proposal.kind))
+}
+
+/// Makes the reading of a proposal.
+fn composed(asked: &Asked<'_>, ink: &Ink, proposal: &structure::readers::Proposal) -> Reading {
+    let composed = Composed::new(ink, proposal);
+    let kept = RefCell::default();
+    let own = Asked { kind: Some(proposal.kind), kept: &kept, ..*asked };
+    let how =
+        Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
+    let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
+    composed.back(ink, parts)
 }
 
 /// Whether a reading explains the ink clearly better than another one of the same kind.

@@ -390,6 +390,7 @@ export const zhWarnings: Record<string, string> = {
   'laws-shrink':
     '最后一天的大小只有最初的 {value}（至少 {bound}）：器官不会越长越小，请检查表中的日期、顺序和单位',
   'unlike-a-plant': '这看起来不像植物：已按最接近的植物生成',
+  'read-by-masses': '大多数线条是阴影：只按它们覆盖的区域生成；如果植物不对，请用一条线画出每个器官的轮廓',
   'left-out': '植物旁边有 {count} 笔看起来不像植物，已略去',
   scribble: '第 {stroke} 笔是涂鸦：已当作树冠',
   'sample-skipped': '第 {stroke} 笔有 {count} 个点不是可用的数字，已略去',

@@ -29,13 +29,18 @@ const SAME_COLOR: u8 = 6;
 struct CastShadow {
     /// It is at least this many times as wide as high.
     wide: f64,
+    /// The same if it is seen through, or painted before all else, so that the plant stands on it.
+    wide_below_all: f64,
     /// Its middle lies below this height of all else, as a share of that height.
     low: f64,
+    /// The same if it is seen through, or painted before all else.
+    low_below_all: f64,
     /// Its channels differ by at most this: it is grey or black.
     grey: u8,
 }
 
-const CAST_SHADOW: CastShadow = CastShadow { wide: 3.0, low: 0.06, grey: 24 };
+const CAST_SHADOW: CastShadow =
+    CastShadow { wide: 3.0, wide_below_all: 1.6, low: 0.06, low_below_all: 0.3, grey: 24 };
 
 /// A line and its place.
 struct Placed {
@@ -233,22 +238,29 @@ impl Work {
             let [low, high] = [c.iter().min(), c.iter().max()].map(|x| x.copied().unwrap_or_default());
             high - low <= CAST_SHADOW.grey
         };
+        let seen = || placed.iter().filter(|p| !out[p.figure][p.line]);
+        let first = seen().map(|p| p.figure).min();
+        let is_seen_through =
+            |p: &Placed| self.figures[p.figure].fill.is_some_and(|f| f.opacity < LIMITS.translucent);
+        let is_below_all = |p: &Placed| Some(p.figure) == first || is_seen_through(p);
         let is_shadow = |p: &&Placed| {
             let figure = &self.figures[p.figure];
             let size = p.extent.size();
+            let wide = if is_below_all(p) { CAST_SHADOW.wide_below_all } else { CAST_SHADOW.wide };
             !figure.lined
                 && figure.lines.len() == 1
                 && figure.fill.is_some_and(|f| f.color.is_none_or(is_grey))
-                && size.x >= CAST_SHADOW.wide * size.y
+                && size.x >= wide * size.y
                 && is_ellipse(&figure.lines[p.line], p.extent)
         };
-        let seen = || placed.iter().filter(|p| !out[p.figure][p.line]);
         let Some(drawn) = seen().filter(|p| !is_shadow(p)).map(|p| p.extent).reduce(Extent::with) else {
             return;
         };
-        let highest = drawn.lo.y + CAST_SHADOW.low * drawn.size().y;
-        let found: Vec<&Placed> =
-            seen().filter(is_shadow).filter(|p| p.extent.middle().y < highest).collect();
+        let is_low = |p: &&Placed| {
+            let low = if is_below_all(p) { CAST_SHADOW.low_below_all } else { CAST_SHADOW.low };
+            p.extent.middle().y < drawn.lo.y + low * drawn.size().y
+        };
+        let found: Vec<&Placed> = seen().filter(is_shadow).filter(is_low).collect();
         found.into_iter().for_each(|p| out[p.figure][p.line] = true);
     }
 

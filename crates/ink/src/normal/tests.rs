@@ -342,3 +342,35 @@ fn petals_are_no_dashes_of_the_pen_of_the_stem() {
     let points: Vec<bool> = normal.strokes.iter().map(|s| is_closed(&s.samples)).collect();
     assert_eq!(points, [false, true, false]);
 }
+
+#[test]
+fn white_ink_is_not_seen_on_white_paper_and_is_on_an_area() {
+    let net = |color| {
+        // A ladder: its rungs make it no pen's stroke.
+        let bar = |lo: [f64; 2], hi: [f64; 2]| line(&[lo, [hi[0], lo[1]], hi, [lo[0], hi[1]], lo]);
+        area(
+            vec![
+                line(&[
+                    [0.0, 0.0],
+                    [1.0, 0.0],
+                    [1.0, 20.0],
+                    [20.0, 20.0],
+                    [20.0, 21.0],
+                    [1.0, 21.0],
+                    [1.0, 60.0],
+                    [0.0, 60.0],
+                    [0.0, 0.0],
+                ]),
+                bar([30.0, 0.0], [31.0, 60.0]),
+            ],
+            color,
+        )
+    };
+    let leaf = |at: f64, radius: f64| area(vec![ring(DVec2::new(at, 30.0), radius, 24)], [0, 160, 0]);
+    let of = |figures: Vec<Figure>| normalise(figures, None, &[]).strokes.len();
+    let white = [255; 3];
+    assert_eq!(of(vec![net(white), leaf(100.0, 20.0)]), 1);
+    // On a leaf it is seen, and in another colour too.
+    assert!(of(vec![leaf(20.0, 60.0), net(white), leaf(200.0, 20.0)]) > 2);
+    assert!(of(vec![net([90, 60, 30]), leaf(100.0, 20.0)]) > 1);
+}

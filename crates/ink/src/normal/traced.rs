@@ -35,6 +35,8 @@ const SPUR: f64 = 1.6;
 const SPUR_OF_ICON: f64 = 1.0;
 /// Two edges continue each other where the angle between them is below 60 degrees.
 const STRAIGHT_ON: f64 = -0.5;
+/// White paper, and ink that is not seen on it, has at least this in each channel.
+const WHITE: u8 = 250;
 /// Parts without holes that are no longer than this many widths are specks.
 const SPECK: f64 = 2.0;
 
@@ -90,7 +92,13 @@ impl Work {
         if rings > MOST_RINGS {
             return;
         }
-        for figure in self.figures.iter_mut().filter(|f| !f.lined && f.fill.is_some_and(|f| f.said)) {
+        let mut unseen = 0;
+        for row in 0..self.figures.len() {
+            let is_unseen = self.is_unseen(row);
+            let figure = &mut self.figures[row];
+            if figure.lined || !figure.fill.is_some_and(|f| f.said) {
+                continue;
+            }
             let parts = parts_of(figure);
             let slender: Vec<bool> = parts.iter().map(|p| p.is_slender(diagonal)).collect();
             let sum = |measure: fn(&Part) -> f64| {
@@ -99,6 +107,11 @@ impl Work {
             let around: f64 = parts.iter().map(|p| p.around).sum();
             let ink = sum(|p| p.around);
             if ink < MOSTLY * around || ink <= 0.0 {
+                continue;
+            }
+            if is_unseen {
+                unseen += figure.lines.len();
+                figure.lines.clear();
                 continue;
             }
             let mut lines = Vec::new();
@@ -126,7 +139,21 @@ impl Work {
             figure.like.width = Some(pen);
             (figure.lined, figure.fill) = (true, None);
         }
+        self.figures.retain(|f| !f.lines.is_empty());
+        self.note(Change::Paper, unseen);
         self.note(Change::TracedInk, reduced);
+    }
+
+    /// Whether a figure is white and lies on white paper: nothing of another colour was painted below it, but something
+    /// was elsewhere.
+    fn is_unseen(&self, row: usize) -> bool {
+        let is_white = |f: &Figure| f.color_seen().is_some_and(|c| c.iter().all(|x| *x >= WHITE));
+        let extent = |f: &Figure| f.lines.iter().filter_map(|l| Extent::from_line(l)).reduce(Extent::with);
+        let Some(own) = extent(&self.figures[row]) else { return false };
+        let is_below = |f: &Figure| !is_white(f) && extent(f).is_some_and(|e| e.meets(own));
+        is_white(&self.figures[row])
+            && !self.figures[..row].iter().any(is_below)
+            && !self.figures.iter().all(is_white)
     }
 }
 

@@ -14,6 +14,7 @@
 //! | `vessel` | pots that were drawn in several strokes |
 //! | `faces`, `shape` | the areas that lines enclose together, and the form of outlines |
 //! | `readers` | plants that are recognised by the arrangement of their faces and lines |
+//! | `masses` | plants that are recognised by the areas that hatched and engraved lines cover |
 //! | `compose` | from the parts that a reader proposes to a reading |
 
 mod chains;
@@ -21,6 +22,7 @@ mod classes;
 mod compose;
 mod faces;
 mod hidden;
+pub(crate) mod masses;
 pub(crate) mod readers;
 mod score;
 mod shape;

@@ -42,6 +42,8 @@ pub(super) struct Style {
     /// Product of the opacities of the element and all ancestors.
     pub(super) opacity: f64,
     fill_opacity: f64,
+    /// Opacity of the gradient that fills it; 1 for a colour.
+    gradient_opacity: f64,
     stroke_opacity: f64,
     /// `fill-rule`.
     pub(super) even_odd: bool,
@@ -65,6 +67,7 @@ impl Default for Style {
             no_width: false,
             opacity: 1.0,
             fill_opacity: 1.0,
+            gradient_opacity: 1.0,
             stroke_opacity: 1.0,
             even_odd: false,
             layer: None,
@@ -76,8 +79,16 @@ impl Default for Style {
 /// Paint of less than this opacity is invisible.
 const UNSEEN: f64 = 0.004;
 
-/// Meaning of the values `url(#..)`: the mean colour of each gradient.
-pub(super) type Servers = LiteMap<String, [u8; 3]>;
+/// The mean of a gradient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gradient {
+    color: [u8; 3],
+    /// 0 to 1.
+    opacity: f64,
+}
+
+/// Meaning of the values `url(#..)`: the mean of each gradient.
+pub(super) type Servers = LiteMap<String, Gradient>;
 
 impl Style {
     /// Returns whether the line is visible.
@@ -92,7 +103,7 @@ impl Style {
 
     /// Returns the opacity of the area.
     pub(super) fn area_opacity(&self) -> f64 {
-        self.opacity * self.fill_opacity
+        self.opacity * self.fill_opacity * self.gradient_opacity
     }
 
     /// Returns the style of `node`, whose parent has `self`.
@@ -137,6 +148,8 @@ impl Style {
             "stroke" => self.stroke = self.paint(value, servers),
             "fill" => {
                 self.fill = self.paint(value, servers);
+                self.gradient_opacity =
+                    reference(value).and_then(|(id, _)| servers.get(id)).map_or(1.0, |g| g.opacity);
                 self.fill_said = true;
             }
             "visibility" => self.visible = !matches!(value, "hidden" | "collapse"),
@@ -157,7 +170,7 @@ impl Style {
 
     fn paint(&self, value: &str, servers: &Servers) -> Paint {
         if let Some((id, fallback)) = reference(value) {
-            let known = servers.get(id).copied().or_else(|| parse_color(fallback));
+            let known = servers.get(id).map(|g| g.color).or_else(|| parse_color(fallback));
             return known.map_or(Paint::Server, Paint::Color);
         }
         match value {
@@ -198,14 +211,14 @@ pub(super) fn reference(value: &str) -> Option<(&str, &str)> {
     Some((inside.trim().trim_matches(['"', '\'']).strip_prefix('#')?, rest.trim()))
 }
 
-/// Returns the mean colour of each gradient; one that refers to another has that one's.
+/// Returns the mean of each gradient; one that refers to another has that one's.
 pub(super) fn servers(root: Node<'_, '_>, sheet: &Sheet) -> Servers {
     let mut own = Servers::new();
     let mut refers: Vec<(String, String)> = Vec::new();
     let gradients = root.descendants().filter(|n| n.tag_name().name().ends_with("Gradient"));
     for node in gradients {
         let Some(id) = node.attribute("id") else { continue };
-        let stops: Vec<[u8; 3]> = node.children().filter_map(|stop| stop_color(stop, sheet)).collect();
+        let stops: Vec<Gradient> = node.children().filter_map(|stop| stop_paint(stop, sheet)).collect();
         let href = node.attributes().find(|a| a.name() == "href").and_then(|a| a.value().strip_prefix('#'));
         if let Some(mean) = mean(&stops) {
             own.insert(id.to_owned(), mean);
@@ -216,39 +229,46 @@ pub(super) fn servers(root: Node<'_, '_>, sheet: &Sheet) -> Servers {
     // Four rounds follow any chain that a program writes.
     for _ in 0..4 {
         for (id, href) in &refers {
-            if let Some(&color) = own.get(href) {
-                own.insert(id.clone(), color);
+            if let Some(&mean) = own.get(href) {
+                own.insert(id.clone(), mean);
             }
         }
     }
     own
 }
 
-fn stop_color(stop: Node<'_, '_>, sheet: &Sheet) -> Option<[u8; 3]> {
+/// Returns the colour and the opacity of a gradient's stop.
+fn stop_paint(stop: Node<'_, '_>, sheet: &Sheet) -> Option<Gradient> {
     if stop.tag_name().name() != "stop" {
         return None;
     }
     let mut color = stop.attribute("stop-color").unwrap_or("black").to_owned();
-    sheet.each_of(stop, |name, value| {
-        if name == "stop-color" {
-            value.clone_into(&mut color);
-        }
-    });
+    let mut opacity = stop.attribute("stop-opacity").unwrap_or("1").to_owned();
+    let mut set = |name: &str, value: &str| match name {
+        "stop-color" => value.clone_into(&mut color),
+        "stop-opacity" => value.clone_into(&mut opacity),
+        _ => {}
+    };
+    sheet.each_of(stop, |name, value| set(name, value));
     for (name, value) in stop.attribute("style").into_iter().flat_map(declarations) {
-        if name == "stop-color" {
-            value.clone_into(&mut color);
-        }
+        set(name, value);
     }
-    parse_color(&color)
+    Some(Gradient { color: parse_color(&color)?, opacity: share(&opacity).unwrap_or(1.0) })
 }
 
-fn mean(colors: &[[u8; 3]]) -> Option<[u8; 3]> {
-    let count = u32::try_from(colors.len()).ok().filter(|n| *n > 0)?;
+/// Returns the mean of a gradient's stops: stops that are seen through give less of their colour.
+fn mean(stops: &[Gradient]) -> Option<Gradient> {
+    if stops.is_empty() {
+        return None;
+    }
+    let count = stops.len() as f64;
+    let opaque: f64 = stops.iter().map(|s| s.opacity).sum();
+    let weight = |s: &Gradient| if opaque > 0.0 { s.opacity / opaque } else { 1.0 / count };
     let channel = |k: usize| {
-        let sum: u32 = colors.iter().map(|c| u32::from(c[k])).sum();
-        u8::try_from((sum + count / 2) / count).unwrap_or(u8::MAX)
+        let mean: f64 = stops.iter().map(|s| weight(s) * f64::from(s.color[k])).sum();
+        mean.round().clamp(0.0, 255.0) as u8
     };
-    Some([channel(0), channel(1), channel(2)])
+    Some(Gradient { color: [channel(0), channel(1), channel(2)], opacity: opaque / count })
 }
 
 /// Returns the mode that an element's own label, id or class asks for.
@@ -275,7 +295,7 @@ pub(super) struct Sheet {
     /// Rules in the order of the sheet, by the last simple part of the selector, which finds the rules of an element.
     rules: LiteMap<String, Vec<Rule>>,
     count: usize,
-    /// Colours of gradients.
+    /// Means of gradients.
     pub(super) servers: Servers,
     /// Selectors that were not understood.
     pub(super) ignored: usize,

@@ -177,6 +177,21 @@ fn gradients_give_their_mean() {
 }
 
 #[test]
+fn a_gradient_that_fades_out_has_the_colour_that_is_seen_and_casts_no_outline() {
+    let (d, _) = drawing(
+        "<linearGradient id='g'><stop style='stop-color:#0000ff;stop-opacity:1'/>\
+         <stop stop-color='#ff0000' stop-opacity='0'/></linearGradient>\
+         <path fill='url(#g)' d='M0 0L30 0L30 40L2 50Z'/>",
+    );
+    assert_eq!(d.strokes[0].color, Some([0, 0, 255]));
+    let plant = "<path fill='#00b300' d='M20 10L40 10L36 80L24 80Z'/>";
+    let shadow = "<radialGradient id='s'><stop/><stop stop-opacity='0'/></radialGradient>\
+                  <ellipse fill='url(#s)' cx='30' cy='78' rx='20' ry='9'/>";
+    let (d, _) = drawing(&format!("{plant}{shadow}"));
+    assert_eq!(d.strokes.len(), 1, "the shadow at the foot is no part of the plant");
+}
+
+#[test]
 fn a_sheet_that_is_stretched_stretches_its_drawing() {
     let text = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 10 10' width='40' height='20' \
                 preserveAspectRatio='none'><path stroke='red' d='M1 1L5 3'/></svg>";
