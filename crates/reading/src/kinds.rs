@@ -13,6 +13,7 @@ use glam::DVec2;
 use ink::{Classified, Ink, StrokeClass};
 
 use crate::look::{LINE, LOOP};
+use crate::palette::Brights;
 use crate::{Kind, Reading, Scored, look};
 
 /// Numbers of a drawing.
@@ -316,9 +317,23 @@ pub(crate) struct Shares {
 impl Shares {
     /// Reduces the shares of woody kinds: the colours are those of a plant without wood.
     pub(crate) fn without_wood(&mut self) {
+        self.reduce(GREEN_WOOD, |kind| kind.is_like(Kind::Tree) || kind == Kind::Palm);
+    }
+
+    /// Reduces the shares of kinds whose bright colours lie elsewhere: a flower stands on its green, a fruit hangs from
+    /// it, and a root lies below it.
+    pub(crate) fn weigh_colours(&mut self, brights: Brights) {
+        match brights {
+            Brights::Above => self.reduce(MISPLACED_COLOUR, |kind| kind.is_like(Kind::Fruit)),
+            Brights::Below => self.reduce(MISPLACED_COLOUR, |kind| kind.is_like(Kind::Flower)),
+            Brights::Among => {}
+        }
+    }
+
+    /// Multiplies the shares of some kinds by a factor; the others share the rest in proportion.
+    fn reduce(&mut self, factor: f64, is_reduced: impl Fn(Kind) -> bool) {
         let before: f64 = self.kinds.iter().map(|s| s.score).sum();
-        let woody = self.kinds.iter_mut().filter(|s| s.kind.is_like(Kind::Tree) || s.kind == Kind::Palm);
-        woody.for_each(|s| s.score *= GREEN_WOOD);
+        self.kinds.iter_mut().filter(|s| is_reduced(s.kind)).for_each(|s| s.score *= factor);
         let after: f64 = self.kinds.iter().map(|s| s.score).sum();
         let rise = before / after.max(f64::MIN_POSITIVE);
         self.kinds.iter_mut().for_each(|s| s.score *= rise);
@@ -326,6 +341,8 @@ impl Shares {
     }
 }
 
+/// A kind keeps this much of its share in a painted drawing whose bright colours lie where it has none.
+const MISPLACED_COLOUR: f64 = 0.1;
 /// A woody kind keeps this much of its share in a drawing that is painted without wood.
 const GREEN_WOOD: f64 = 0.1;
 /// A kind that a glance does not see at all keeps this much of its share: a picture so small can mislead.

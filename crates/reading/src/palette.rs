@@ -18,6 +18,10 @@ struct PaletteLimits {
     green: core::ops::Range<f64>,
     /// The hues of blue, degrees: from cyan to violet. No leaf, wood or pot has them.
     blue: core::ops::Range<f64>,
+    /// Colours lie above green if their middle does, by more than this share of the drawing's height.
+    above: f64,
+    /// Colours and green each cover at least this share of all painted areas.
+    patch: f64,
     /// A herb is green over at least this share of its lines.
     herb_green: f64,
     /// A herb has less than this share of lines that could be wood.
@@ -32,6 +36,8 @@ const LIMITS: PaletteLimits = PaletteLimits {
     dark: 60,
     green: 62.0..170.0,
     blue: 185.0..285.0,
+    above: 0.1,
+    patch: 0.08,
     herb_green: 0.25,
     herb_wood: 0.08,
     wood_least: 0.1,
@@ -57,6 +63,56 @@ pub(crate) fn is_mostly_green<'a>(strokes: impl Iterator<Item = &'a InkStroke>) 
         *if is_green_stroke(stroke) { &mut green } else { &mut other } += stroke.length;
     }
     green > other
+}
+
+/// Whether a stroke has a colour that neither leaves nor wood have.
+pub(crate) fn is_bright_stroke(stroke: &InkStroke) -> bool {
+    stroke.color.is_some_and(|c| !is_green(c) && !may_be_wood(c))
+}
+
+/// Where the bright colours of a painted drawing lie: those of petals, fruits and roots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Brights {
+    /// Above the green, as a flower on its stem.
+    Above,
+    /// Below the green, as a fruit on its stalk or a root under its leaves.
+    Below,
+    /// Among it, or there are none.
+    Among,
+}
+
+/// Returns where the bright colours of a drawing lie. Cost: linear in strokes.
+pub(crate) fn brights(ink: &Ink) -> Brights {
+    if !is_painted(ink) {
+        return Brights::Among;
+    }
+    // Area, and area times height of the middle, of green and of bright colours.
+    let (mut green, mut bright, mut whole) = ([0.0; 2], [0.0; 2], 0.0);
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for stroke in &ink.strokes {
+        let area = geom::signed_area(stroke.hull()).abs();
+        let Some((lo, hi)) = geom::bounds(&stroke.points) else { continue };
+        (low, high) = (low.min(lo.y), high.max(hi.y));
+        whole += area;
+        let sum = match stroke.color {
+            Some(c) if is_green(c) => &mut green,
+            _ if is_bright_stroke(stroke) => &mut bright,
+            _ => continue,
+        };
+        sum[0] += area;
+        sum[1] += area * lo.midpoint(hi).y;
+    }
+    if green[0].min(bright[0]) <= LIMITS.patch * whole {
+        return Brights::Among;
+    }
+    let rise = (bright[1] / bright[0] - green[1] / green[0]) / (high - low).max(f64::MIN_POSITIVE);
+    if rise > LIMITS.above {
+        Brights::Above
+    } else if rise < -LIMITS.above {
+        Brights::Below
+    } else {
+        Brights::Among
+    }
 }
 
 /// Whether a stroke has the colour of wood: brown, grey or black. It says nothing unless the drawing is painted.

@@ -176,6 +176,7 @@ impl First {
         if palette::is_herb(ink) {
             shares.without_wood();
         }
+        shares.weigh_colours(palette::brights(ink));
         let row = no_plant::row(&row, &glance, ink.strokes.len(), sureness(ink, classes));
         Self { reading, said, shares, glance, no_plant: no_plant::chance(&row) }
     }

@@ -141,7 +141,8 @@ impl Work {
         let (mut under, mut shade) = (self.none_out(), self.none_out());
         for area in &areas {
             let near = || outlines.iter().filter(|o| o.figure != area.figure && o.extent.meets(area.extent));
-            let above = |o: &&Outline| self.figures[o.figure].lined || o.figure > area.figure;
+            let covers = |o: &Outline| !self.is_translucent(o) || self.is_translucent(area);
+            let above = |o: &&Outline| self.figures[o.figure].lined || o.figure > area.figure && covers(o);
             let line = near().find(|o| above(o) && lies_under(area, o));
             if let Some(line) = line {
                 // Of two areas, the upper one is visible.
@@ -185,11 +186,15 @@ impl Work {
         self.figures.iter().enumerate().filter_map(outline).collect()
     }
 
+    fn is_translucent(&self, area: &Outline) -> bool {
+        self.figures[area.figure].fill.is_some_and(|f| f.opacity < LIMITS.translucent)
+    }
+
     /// Whether an area shades what an outline encloses: see-through and within it, or a part of it along its edge.
     fn is_shade(&self, area: &Outline, of: &Outline) -> bool {
         let below = &self.figures[of.figure];
         let fill = self.figures[area.figure].fill;
-        let translucent = fill.is_some_and(|f| f.opacity < LIMITS.translucent);
+        let translucent = self.is_translucent(area);
         let larger = area.area <= if translucent { 1.1 } else { PART.end } * of.area;
         let slack = 0.1 * of.extent.size().max_element();
         if !(larger && of.extent.holds(area.extent, slack)) || (below.fill.is_none() && !below.lined) {

@@ -374,3 +374,19 @@ fn white_ink_is_not_seen_on_white_paper_and_is_on_an_area() {
     assert!(of(vec![leaf(20.0, 60.0), net(white), leaf(200.0, 20.0)]) > 2);
     assert!(of(vec![net([90, 60, 30]), leaf(100.0, 20.0)]) > 1);
 }
+
+#[test]
+fn an_organ_under_its_own_outline_seen_through_stays() {
+    let at = DVec2::new(10.0, 10.0);
+    let painted = |color: [u8; 3]| {
+        let mut figure = area(vec![ring(at, 8.0, 24)], color);
+        figure.like.color = Some(color);
+        figure
+    };
+    let petal = painted([220, 30, 60]);
+    let mut gloss = painted([250, 200, 210]);
+    gloss.fill.as_mut().expect("an area").opacity = 0.5;
+    let normal = normalise(vec![petal, gloss.clone(), gloss], None, &[]);
+    assert_eq!(normal.strokes.len(), 1);
+    assert_eq!(normal.strokes[0].color, Some([220, 30, 60]));
+}

@@ -4,6 +4,7 @@
 //! the drawing resembles; it proposes a plant only if the arrangement leaves little doubt.
 
 mod bloom;
+mod bud;
 mod bunch;
 mod cactus;
 mod chevrons;
@@ -436,19 +437,16 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     // Lobes that spread from the foot are fingers, not tiers.
     let conifer = if lobed.is_none() { conifer::propose(&scene) } else { None };
     let head = if cup.is_none() && !is_from_front { head::propose(&scene) } else { None };
-    let others = [
-        cactus::propose,
-        fruit::propose,
-        leaf::propose,
-        sprig::propose,
-        palm::propose,
-        taproot::propose,
-        crown::propose,
-    ]
-    .map(|read| read(&scene));
+    let bud = bud::propose(&scene, ink);
+    // Petals that show above another one are no leaves on a fruit.
+    let fruit = if bud.is_none() { fruit::propose(&scene) } else { None };
+    let others =
+        [cactus::propose, leaf::propose, sprig::propose, palm::propose, taproot::propose, crown::propose]
+            .map(|read| read(&scene));
     let mut found: Vec<Proposal> =
         [clover, lobed, loose, bloom, bunch, cup, head, conifer, chevrons, mushroom]
             .into_iter()
+            .chain([bud, bud::painted(&scene, ink), fruit])
             .chain(others)
             .flatten()
             .collect();

@@ -461,3 +461,58 @@ fn blades_that_were_painted_green_are_no_petals() {
         assert_eq!(kinds(&drawing).first(), Some(&kind));
     }
 }
+
+/// The petal in front of a rose in profile: a cup whose rim falls to the right.
+fn rose_front() -> Vec<DVec2> {
+    let cup = |k: u32| {
+        let (s, c) = ops::sin_cos(ops::PI * f64::from(k) / 24.0);
+        p(-3.0 * c, 4.0 - 4.0 * s)
+    };
+    (0..=24).map(cup).chain([p(3.0, 4.2), p(-3.0, 6.2), p(-3.0, 4.0)]).collect()
+}
+
+#[test]
+fn petals_that_show_close_above_a_cup_are_a_rose_and_leaves_on_a_fruit_are_not() {
+    let left = vec![p(-2.9, 6.6), p(-0.6, 5.8), p(-1.0, 7.6), p(-2.6, 7.8), p(-2.9, 6.6)];
+    let right = vec![p(-0.2, 5.6), p(2.9, 4.6), p(2.4, 6.8), p(-0.4, 7.4), p(-0.2, 5.6)];
+    let rose = [rose_front(), left, right];
+    let found = seen(&rose);
+    assert_eq!(found.first().map(|q| (q.kind, q.heads.len())), Some((Kind::Flower, 1)));
+    assert!(found[0].parts.iter().filter(|q| q.class == StrokeClass::Blade).all(|q| q.root.is_some()));
+    let is_flower = |lines: &[Vec<DVec2>]| seen(lines).iter().any(|q| q.kind == Kind::Flower);
+    // One petal is too few, and leaves that touch with their bases stand off.
+    assert!(!is_flower(&rose[..2]));
+    let body = ring(p(0.0, 0.0), 3.0);
+    let leaves = [leaf(p(-0.2, 3.1), p(-2.4, 6.0), 0.4), leaf(p(0.2, 3.1), p(2.4, 6.0), 0.4)];
+    assert!(!is_flower(&[body, leaves[0].clone(), leaves[1].clone()]));
+}
+
+#[test]
+fn bright_areas_above_green_ones_are_a_flower_and_below_them_are_not() {
+    let area = |line: Vec<DVec2>, color: [u8; 3]| ink::Stroke {
+        samples: line.into_iter().map(Into::into).collect(),
+        color: Some(color),
+        ..ink::Stroke::default()
+    };
+    let kinds = |up: f64| {
+        let (red, dark, green) = ([220, 30, 40], [150, 20, 30], [60, 160, 40]);
+        let strokes = vec![
+            area(ring(p(0.0, 5.0 * up), 3.0), red),
+            area(
+                vec![
+                    p(2.6, 5.0 * up - 1.0),
+                    p(3.6, 5.0 * up + 3.0),
+                    p(1.0, 5.0 * up + 2.6),
+                    p(2.6, 5.0 * up - 1.0),
+                ],
+                dark,
+            ),
+            area(vec![p(-0.4, -4.0), p(0.4, -4.0), p(0.5, 2.2), p(-0.5, 2.2), p(-0.4, -4.0)], green),
+            area(leaf(p(0.4, -2.0), p(4.0, 0.0), 0.4), green),
+        ];
+        let drawing = Drawing { strokes, ..Drawing::default() };
+        propose(&ink::clean(&drawing, &mut base::Report::default()))
+    };
+    assert!(kinds(1.0).iter().any(|q| q.kind == Kind::Flower && q.heads.len() == 1));
+    assert!(!kinds(-1.6).iter().any(|q| q.kind == Kind::Flower && q.heads.len() == 1));
+}
