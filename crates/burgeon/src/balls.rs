@@ -3,10 +3,10 @@
 use document::LeafMaker;
 use glam::DVec3;
 use leaf::{FullMarks, LeafSpec, Rays};
+use makers::LeafError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::leaves::LeafError;
 use crate::scene::{LeafInput, SceneError, leaf_input};
 
 /// One control ball.

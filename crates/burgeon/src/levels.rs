@@ -8,10 +8,9 @@ use base::{Cancelled, Run, Stopped};
 use formats::{Assembly, Level};
 use mesh::{Copies, Model, Texture};
 use plant::{AxisKind, OrganKind, Plant};
-use skin::{Layout, SkinSpec};
+use skin::{Layout, SkinSpec, coarser};
 
 use crate::assembly::{AssemblyError, assemble};
-use crate::lod::coarser;
 
 /// A model, its plant, and the places of that plant's parts in the model.
 pub(crate) type LaidOut = (Model, (Plant, Layout));

@@ -5,10 +5,9 @@ use base::LiteMap;
 use base::{Cancelled, OverBudget, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
 use ink::StrokeClass;
+use makers::LeafTemplate;
 use sketch::SketchSpec;
 use skin::{SkinSpec, Worn};
-
-use crate::template::LeafTemplate;
 
 /// Classes that the user set, by stroke index in the drawing.
 pub type ClassOverrides = LiteMap<u32, StrokeClass>;
