@@ -512,7 +512,7 @@ impl Evaluator {
             let sketched = Sketched { ink, reading, extent: self.extent(), is_guessed: self.is_guessed() };
             check_sketch(&sketched, &mut checks);
         }
-        let mut counts = Counts::of_plant(shown);
+        let mut counts = Counts::from_plant(shown);
         counts.vertices = model.value.vertex_count() as u64;
         counts.triangles = model.value.triangle_count() as u64;
         let digest = if self.preview || self.previewing { String::new() } else { shown.digest_hex() };

@@ -566,7 +566,7 @@ impl Made {
         anew: bool,
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
-        let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::of_plant(plant) };
+        let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::from_plant(plant) };
         options.skin.wind = from.wind;
         options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
         let drawing = plant.drawing();
@@ -585,7 +585,7 @@ impl Made {
             (Some(day), Some(plant)) => {
                 if self.opening.is_none() {
                     let made = (plant, &self.item);
-                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
+                    self.opening = Some(OpeningPlant::from_made(&drawing.name, made, &options.skin)?);
                 }
                 if let Some(opening) = self.opening.as_mut().filter(|_| changed || opened) {
                     let open = opening.make_on_day(day, &opening.law(), from.seed, run)?;

@@ -110,7 +110,7 @@ impl Places {
         Self(borne.map(place).collect())
     }
 
-    fn of_leaves(plant: &Plant) -> Self {
+    fn find_leaves(plant: &Plant) -> Self {
         Self::find(plant, leaves(plant).map(|o| (o.bearer, o.key)))
     }
 
@@ -150,7 +150,7 @@ pub fn keep_out(
     level: u32,
     is_free: &dyn Fn(&Frame, f64, &[DVec3]) -> bool,
 ) {
-    let places = Places::of_leaves(plant);
+    let places = Places::find_leaves(plant);
     let larger = larger(plant, &places, leaf_halvings(plant, own, &places, level));
     let drawn = crate::drawn_shapes(copy, skin);
     for organ in copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
@@ -340,7 +340,7 @@ pub fn coarser_with(
     widen_petals(&mut copy, plant, fewer_flowers * fewer_flowers * f64::from(1_u32 << petal_halvings));
     let mut petals = vec![0_usize; plant.flowers.len()];
     let whole_shoots = shoots.as_ref().filter(|_| level > 1);
-    let places = Places::of_leaves(plant);
+    let places = Places::find_leaves(plant);
     let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, skin, &places, level) };
     let mut larger = larger(plant, &places, leaf_halvings);
     if fronds {

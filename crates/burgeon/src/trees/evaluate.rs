@@ -378,7 +378,7 @@ impl TreeEvaluator {
             counts: Counts {
                 vertices: model.vertex_count() as u64,
                 triangles: model.triangle_count() as u64,
-                ..Counts::of_plant(plant)
+                ..Counts::from_plant(plant)
             },
             timings_ms: TimingsMs::from_report(report),
             digest: if self.previewing { String::new() } else { plant.digest_hex() },
