@@ -38,7 +38,7 @@ fn deform(bencher: Bencher<'_, '_>, count: usize, run: &Run<'_>) {
     let obb = Obb::fit(&points, 0.05).expect("there are points");
     let counts = [count; 3];
     let weights = Weights::new(&obb, counts, &points).expect("sound counts");
-    let mut lattice = Lattice::of_box(&obb, counts).expect("sound counts");
+    let mut lattice = Lattice::from_box(&obb, counts).expect("sound counts");
     lattice.points.iter_mut().enumerate().for_each(|(i, p)| *p += DVec3::Y * (i as f64 * 1e-5));
     let mut out = vec![DVec3::ZERO; points.len()];
     bencher.bench_local(|| {

@@ -62,7 +62,7 @@ fn rounds() {
     // The last one has internodes a quarter as long, and correspondingly more buds.
     for (markers, finer) in [(12, 1.0), (60, 1.0), (1300, 1.0), (60, 4.0)] {
         let ball = Envelope::Sphere { centre: DVec3::Y * 5.0, radius_m: 5.0 };
-        let plain = GuidedSpec::of_crown(ball);
+        let plain = GuidedSpec::from_crown(ball);
         let internode_m = plain.internode_m / finer;
         let spec = GuidedSpec { markers, internode_m, rounds: 200, ..plain };
         let (none, run) = (Obstacles::none(), run());

@@ -34,7 +34,7 @@ impl Sheet<'_> {
     fn is_of_the_end(&self) -> bool {
         self.rows
             .iter()
-            .any(|r| r.source == StrokeSource::Public && Part::of_key(&r.drawing) == Some(Part::Test))
+            .any(|r| r.source == StrokeSource::Public && Part::from_key(&r.drawing) == Some(Part::Test))
     }
 
     fn read(&self, off: &[&str]) -> Reading {

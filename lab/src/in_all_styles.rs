@@ -333,7 +333,7 @@ pub(crate) fn icons_of_kinds(folder: &Path) -> Outcome<Vec<(Kind, Drawing)>> {
 }
 
 fn made() -> Vec<Styled> {
-    let one = made_drawings::kinds::of_kinds(MADE_SALT, MADE).into_iter().enumerate();
+    let one = made_drawings::kinds::make_of_kinds(MADE_SALT, MADE).into_iter().enumerate();
     one.map(|(k, (word, kind, lines))| Styled {
         set: if kind == Kind::None { Set::MadeThings } else { Set::MadePlants },
         drawing: Drawing::from_polylines(format!("made {word} {k}"), &lines),
@@ -351,7 +351,7 @@ const MADE_SALT: u64 = 40;
 fn scenes(folder: &Path) -> Outcome<Vec<Styled>> {
     let mut found = Vec::new();
     for part in [Part::Train, Part::Choose, Part::Test] {
-        found.extend(read_drawings::of_several(folder, part)?.into_iter().map(|drawing| Styled {
+        found.extend(read_drawings::collect_several(folder, part)?.into_iter().map(|drawing| Styled {
             set: Set::Scenes,
             group: drawing.name.clone(),
             drawing,

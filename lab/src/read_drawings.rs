@@ -43,11 +43,11 @@ impl Part {
         if let Some(person) = line.get("person").and_then(Value::as_u64) {
             return Some(if person.is_multiple_of(2) { Self::Choose } else { Self::Test });
         }
-        Self::of_key(text_of(line, "key_id"))
+        Self::from_key(text_of(line, "key_id"))
     }
 
     /// Returns the part of a drawing of "Quick, Draw!".
-    pub(crate) fn of_key(key: &str) -> Option<Self> {
+    pub(crate) fn from_key(key: &str) -> Option<Self> {
         match key.parse::<u64>().ok()? % 5 {
             2 => Some(Self::Train),
             3 => Some(Self::Choose),
@@ -189,7 +189,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         rows.entry(case.set.clone()).or_default().push((case, judged));
     }
     say(&table(&rows));
-    let things = made_drawings::kinds::of_kinds(part as u64 + 1, MADE_TO_TEST).into_iter();
+    let things = made_drawings::kinds::make_of_kinds(part as u64 + 1, MADE_TO_TEST).into_iter();
     let things: Vec<_> = things.filter(|(_, kind, _)| *kind == Kind::None).collect();
     let known =
         things.iter().filter(|(word, _, lines)| read(&Drawing::from_polylines(*word, lines)).1).count();
@@ -321,7 +321,7 @@ const UNSEEN: u64 = 8;
 
 /// Makes drawings of each way to draw a plant from which no model has learnt.
 fn ways(part: Part) -> Vec<Case> {
-    let made = made_drawings::kinds::of_kinds(UNSEEN + part as u64, MADE_TO_TEST).into_iter();
+    let made = made_drawings::kinds::make_of_kinds(UNSEEN + part as u64, MADE_TO_TEST).into_iter();
     made.filter(|w| w.1 != Kind::None)
         .enumerate()
         .map(|(k, (word, kind, lines))| Case {
@@ -502,7 +502,7 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
         made(part).into_iter().filter(|c| c.own == usize::MAX && c.set != made_drawings::BEDS_OF_FLOWERS);
     let rows = rows.map(|c| Labelled { drawing: c.drawing, kinds: c.kinds, origin: Origin::Rows });
     let each = if part == Part::Train { MADE_TO_LEARN } else { MADE_TO_TEST };
-    let kinds = made_drawings::kinds::of_kinds(part as u64 + 1, each).into_iter().enumerate();
+    let kinds = made_drawings::kinds::make_of_kinds(part as u64 + 1, each).into_iter().enumerate();
     let kinds = kinds.map(|(k, (word, kind, lines))| Labelled {
         drawing: Drawing::from_polylines(format!("made {word} {k}"), &lines),
         kinds: vec![kind],
@@ -518,7 +518,7 @@ pub(crate) fn by_people(folder: &Path, part: Part) -> Outcome<Vec<(String, Optio
 }
 
 /// Collects drawings of several plants of a part: drawings by people put next to one another, and made ones.
-pub(crate) fn of_several(folder: &Path, part: Part) -> Outcome<Vec<Drawing>> {
+pub(crate) fn collect_several(folder: &Path, part: Part) -> Outcome<Vec<Drawing>> {
     let together = together(&people(folder, part, OF_SPG)?, part, SIDE_BY_SIDE);
     let all = together.into_iter().chain(made(part)).filter(|c| c.kinds.len() != 1 && c.own == usize::MAX);
     Ok(all.map(|c| c.drawing).collect())

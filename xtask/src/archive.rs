@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::notices::{self, NOTICES};
 use crate::toolchain::shown;
 use crate::{studio, web};
 use xtask::shell::{Outcome, built_burgeon, command, finish, output, prepare, repository, say, target_dir};
@@ -39,6 +40,7 @@ pub(crate) fn run() -> Outcome {
     for (from, name) in FILES {
         std::fs::copy(repository().join(from), folder.join(name)).map_err(failed)?;
     }
+    notices::write("burgeon-cli", true, &folder.join(NOTICES))?;
     for (shell, file) in SHELLS {
         let script = output(prepare(&burgeon, &["completions", shell]))?;
         std::fs::write(folder.join("completions").join(file), script).map_err(failed)?;

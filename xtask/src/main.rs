@@ -6,6 +6,7 @@ mod blender;
 mod golden;
 mod minutes;
 mod native;
+mod notices;
 mod npm;
 mod python;
 mod studio;

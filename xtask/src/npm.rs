@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::notices::{self, NOTICES};
 use crate::studio::browser;
 use crate::toolchain::shown;
 use crate::web::{Core, Tools, bindgen, build_core};
@@ -58,6 +59,7 @@ fn build(tools: &Tools, release: bool) -> Outcome {
     let mut c = prepare("node", &["node_modules/typescript/bin/tsc", "-p", "."]);
     c.current_dir(folder());
     finish(c)?;
+    notices::write("burgeon-npm", false, &folder().join(NOTICES))?;
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
         let to = folder().join(licence);
         std::fs::copy(repository().join(licence), &to).map_err(|e| format!("{}: {e}", shown(&to)))?;

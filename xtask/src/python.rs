@@ -178,9 +178,21 @@ pub(crate) fn pip(python: &Path, extra: &[&str]) -> std::process::Command {
     c
 }
 
+/// Puts the licences of the package and the notices of what it contains into it.
+fn licences() -> Outcome {
+    let folder = package().join("burgeon/licences");
+    let fault = |e: std::io::Error| format!("{}: {e}", shown(&folder));
+    std::fs::create_dir_all(&folder).map_err(fault)?;
+    for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
+        std::fs::copy(repository().join(name), folder.join(name)).map_err(fault)?;
+    }
+    crate::notices::write("burgeon-python", true, &folder.join(crate::notices::NOTICES))
+}
+
 /// Returns the wheel that maturin builds with these options.
 pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
     crate::studio::alone(&package().join("burgeon/_alone.js.gz"))?;
+    licences()?;
     let out = target_dir().join("wheels");
     let _ = std::fs::remove_dir_all(&out);
     say(&format!("$ maturin build {} (in apps/python)", options.join(" ")));

@@ -133,7 +133,7 @@ impl Classes {
     }
 
     /// Returns the overrides for a drawing.
-    pub(crate) fn of_drawing(&self, name: &str) -> ClassOverrides {
+    pub(crate) fn for_drawing(&self, name: &str) -> ClassOverrides {
         let mut out = self.any.clone();
         if let Some(named) = self.named.get(name) {
             for (&stroke, &class) in named {
@@ -171,7 +171,7 @@ mod tests {
 
     fn classes(text: &str, drawing: &str) -> Vec<(u32, &'static str)> {
         let all = Classes::parse(text).unwrap();
-        all.of_drawing(drawing).into_iter().map(|(k, c)| (k, c.word())).collect()
+        all.for_drawing(drawing).into_iter().map(|(k, c)| (k, c.word())).collect()
     }
 
     #[test]
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn unused_names_are_found() {
         let all = Classes::parse("rose,0,blade\nlily,1,axis").unwrap();
-        all.of_drawing("rose");
+        all.for_drawing("rose");
         assert_eq!(all.unused(), ["lily"]);
     }
 }

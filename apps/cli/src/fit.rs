@@ -164,7 +164,7 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     let is_table = files::extension(&args.input)
         .is_some_and(|e| ["csv", "tsv", "xlsx"].iter().any(|known| e.eq_ignore_ascii_case(known)));
     let fitted =
-        if is_table { table::fit(args, &machine)?.into() } else { of_scans(args, &mut outputs, &machine)? };
+        if is_table { table::fit(args, &machine)?.into() } else { fit_scans(args, &mut outputs, &machine)? };
     let law = &fitted.law;
     let checked = check_law(law);
     let text = serde_json::to_string_pretty(law)
@@ -180,8 +180,13 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         }
     });
     written?;
-    let mut run =
-        report::of_one("bloom fit", args.seed, &args.input.display().to_string(), &law.name, &args.output);
+    let mut run = report::report_one(
+        "bloom fit",
+        args.seed,
+        &args.input.display().to_string(),
+        &law.name,
+        &args.output,
+    );
     run.input.offset_m = fitted.offset_m;
     if let Some(item) = run.items.first_mut() {
         item.timings_ms.structure = fitted.fit_ms;
@@ -213,7 +218,7 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     Ok(())
 }
 
-fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome<Fitted> {
+fn fit_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome<Fitted> {
     let options = ["plant", "size", "by", "dates", "sheet"];
     args.given.refuse(&options, "growth tables", "scans are fitted")?;
     let axes = files::axes(args.axes.up, args.axes.unit);

@@ -358,7 +358,7 @@ fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
         MethodWord::Colonization => {
             Method::Colonization { envelope, points: 1500, hollow: 0.0, steps: ColonizeSpec::default() }
         }
-        MethodWord::Guided => Method::Guided(GuidedSpec::of_crown(envelope)),
+        MethodWord::Guided => Method::Guided(GuidedSpec::from_crown(envelope)),
         MethodWord::SelfOrganizing => Method::SelfOrganizing(SelfOrganizingSpec::default()),
         MethodWord::Lsystem => Method::Lsystem { rules: OAK_RULES.into(), most_modules: 5_000_000 },
     }

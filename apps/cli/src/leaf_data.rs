@@ -278,7 +278,7 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     };
     if let Some(kind) = model {
         let (model, _, _) = files::read_opened_model(path, input, kind, &axes)?;
-        return LeafTemplate::of_model(&model).map_err(|e| Failure::bad_file(path, e));
+        return LeafTemplate::from_model(&model).map_err(|e| Failure::bad_file(path, e));
     }
     let given = Given::default();
     let asked = Asked {
@@ -300,10 +300,10 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     match read.form {
         Form::Rows(marks) => {
             let full = marks.complete(&mut Report::default()).map_err(|e| Failure::bad_file(path, e))?;
-            LeafTemplate::of_marks(&full, &options, Seed::new(seed), &machine.run()).map_err(failed)
+            LeafTemplate::from_marks(&full, &options.look(), Seed::new(seed), &machine.run()).map_err(failed)
         }
         Form::Rays(rays) => {
-            let made = LeafTemplate::of_rays(&rays, &options, &machine.run()).map_err(failed)?;
+            let made = LeafTemplate::from_rays(&rays, &options.look(), &machine.run()).map_err(failed)?;
             made.map_err(|e| Failure::bad_file(path, e))
         }
     }

@@ -115,7 +115,7 @@ impl Outputs {
     }
 
     /// Returns the outputs of one drawing of a batch, which differ from the batch's own.
-    pub(crate) fn of_one(&self) -> Self {
+    pub(crate) fn for_one(&self) -> Self {
         let (planned, reserved) = (self.planned.clone(), self.planned.len());
         Self { planned, reserved, ready: Vec::new(), made: Vec::new() }
     }

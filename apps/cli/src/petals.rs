@@ -29,7 +29,7 @@ pub(crate) fn drawing(path: &Path) -> Outcome<(Drawing, SketchOptions)> {
         Kind::Project => {
             let document = files::read_project(path, input)?;
             let (read, plant) = files::drawing_of(path, &document)?;
-            Ok((read.drawing, SketchOptions::of_plant(plant)))
+            Ok((read.drawing, SketchOptions::from_plant(plant)))
         }
         Kind::Model(_) => Err(Failure::bad_file(path, "is a model, not a drawing")),
         Kind::Structure(_) => Err(Failure::bad_file(path, "is the structure of a plant, not a drawing")),
@@ -60,6 +60,6 @@ pub(crate) fn petal_form(path: &Path, seed: u64, machine: &Machine) -> Outcome<(
         } else {
             crate::leaf_data::template_of(path, seed, machine)?.scaled(1.0).outline
         };
-    PetalForm::of_outline(&outline)
+    PetalForm::from_outline(&outline)
         .ok_or_else(|| Failure::bad_file(path, "has no form of a petal: it has no width"))
 }

@@ -212,7 +212,7 @@ impl Making<'_> {
         let mut items = vec![made.item];
         checks::accept(&items, &self.args.checks)?;
         let row = self.row(k, name, made_from, &found, &items[0]);
-        let mut own = outputs.of_one();
+        let mut own = outputs.for_one();
         let form = Form::new(&path, format, &self.args.surface.export, &self.args.axes);
         let whole = Whole { plant: &made.plant, model: made.model, levels };
         levels::write(&mut own, &form, whole, &mut items, &mut PngCache::new(), self.machine)?;

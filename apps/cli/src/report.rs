@@ -46,7 +46,7 @@ pub(crate) fn summary(item: &ItemReport, png: Option<&Path>) -> String {
 }
 
 /// Makes the report of a command that makes one thing.
-pub(crate) fn of_one(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
+pub(crate) fn report_one(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
     let mut run = RunReport::new(command, seed);
     run.input.path = input.to_owned();
     run.items.push(ItemReport {

@@ -15,7 +15,7 @@ use crate::output::Outputs;
 use crate::{picture, say};
 
 /// Returns the document of a project that is more than one drawing; `None` for all other files.
-pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
+pub(crate) fn read_file(path: &Path) -> Outcome<Option<Document>> {
     // Tested only by its name: standard input can be opened once.
     if !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("burgeon")) {
         return Ok(None);

@@ -28,7 +28,7 @@ use crate::{checks, levels, names, output, picture, project, say};
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     if let [input] = args.inputs.as_slice()
-        && let Some(scene) = crate::scene::of_file(input)?
+        && let Some(scene) = crate::scene::read_file(input)?
     {
         return crate::scene::make(args, input, &scene, &machine);
     }
@@ -123,14 +123,14 @@ impl<'a> Job<'a> {
 
     /// Returns the options of the project, or the defaults; options of the command line override both.
     fn options(&self, input: &Input) -> SketchOptions {
-        let mut options = input.project.as_deref().map(SketchOptions::of_plant).unwrap_or_default();
+        let mut options = input.project.as_deref().map(SketchOptions::from_plant).unwrap_or_default();
         if let Some(spec) = &self.spec {
             options.spec.clone_from(spec);
         }
         set_sketch(&mut options.spec, &self.args.reading);
         set_skin(&mut options.skin, &self.args.surface);
         options.skin.seed = self.seed(input.project.as_deref());
-        options.classes.extend(self.classes.of_drawing(&input.read.drawing.name));
+        options.classes.extend(self.classes.for_drawing(&input.read.drawing.name));
         options.leaf.clone_from(&self.leaf);
         if let Some(materials) = &self.materials {
             options.skin.worn = materials.worn();
@@ -347,7 +347,7 @@ impl<'a> Job<'a> {
                         let (target, clocked) =
                             (self.target(&next.name), (machine, [next.read_ms, machine.whole_ms()], &run));
                         let made = self.made(&read, target.plant.as_ref().map(|(_, f)| *f), &run)?;
-                        let mut own = outputs.of_one();
+                        let mut own = outputs.for_one();
                         let items = self.write(made, &read, &target, clocked, &mut cache, &mut own)?;
                         own.place().map(|()| items)
                     });

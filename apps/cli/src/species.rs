@@ -167,7 +167,7 @@ fn fit(args: &SpeciesFitArgs) -> Outcome {
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     let first = args.inputs[0].display().to_string();
-    let mut run = report::of_one("species fit", 1, &first, &name, &args.output);
+    let mut run = report::report_one("species fit", 1, &first, &name, &args.output);
     if let Some(item) = run.items.first_mut() {
         item.timings_ms.add_io(read_ms, 0.0);
         item.timings_ms.structure = grow_ms;

@@ -93,8 +93,8 @@ pub(crate) fn fit(args: &FitArgs, machine: &Machine) -> Outcome<TableFit> {
     let time = read.time;
     let warnings = read.warnings.iter().map(ToString::to_string).collect();
     let mut fitted = match &args.table.by {
-        Some(by) => of_groups(args, by, read.rows, machine)?,
-        None => of_plants(args, read.rows, machine)?,
+        Some(by) => fit_groups(args, by, read.rows, machine)?,
+        None => fit_plants(args, read.rows, machine)?,
     };
     fitted.law.time = time;
     fitted.warnings = [warnings, fitted.warnings].concat();
@@ -168,7 +168,7 @@ fn gathered(rows: &[GrowthEntry], name: impl Fn(&GrowthEntry) -> String) -> Vec<
 }
 
 /// Fits a law for each organ of each plant.
-fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
+fn fit_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
     let mut warnings = Vec::new();
     let mut able = Vec::new();
     for (name, mut rows) in gathered(&rows, name_of) {
@@ -195,7 +195,7 @@ fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outco
 }
 
 /// Fits a law for each group of plants.
-fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
+fn fit_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
     let mut warnings = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for row in rows.iter().filter(|r| !r.group.is_empty()) {

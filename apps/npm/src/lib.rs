@@ -83,7 +83,7 @@ impl GrowingTree {
     pub fn first(&mut self) -> Result<Option<Made>, Refused> {
         let Self { asked, spec, seed, options, tree, .. } = self;
         let look = asked.common.run(|run| tree.preview_unedited(spec, *seed, options, run))?;
-        look.map(|look| Made::of_look(look, self.preset)).transpose()
+        look.map(|look| Made::from_look(look, self.preset)).transpose()
     }
 
     /// Makes the tree; equal whether there was a first copy or none.
@@ -93,7 +93,7 @@ impl GrowingTree {
     pub fn whole(self) -> Result<Made, Refused> {
         let Self { asked, spec, preset, seed, options, mut tree } = self;
         let item = asked.common.run(|run| tree.update_unedited(&spec, seed, &options, run))?;
-        Made::of_tree(tree, (item, preset), &asked.common)
+        Made::from_tree(tree, (item, preset), &asked.common)
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Made {
 }
 
 impl Made {
-    pub(crate) fn of_tree(
+    pub(crate) fn from_tree(
         tree: TreeEvaluator,
         (item, preset): (ItemReport, Option<&str>),
         asked: &Asked,
@@ -54,7 +54,7 @@ impl Made {
     }
 
     /// Makes the coarse copy of a tree.
-    pub(crate) fn of_look(
+    pub(crate) fn from_look(
         (model, owners): (Model, (Plant, Layout)),
         preset: Option<&str>,
     ) -> Result<Self, Refused> {
@@ -62,7 +62,7 @@ impl Made {
         let counts = Counts {
             vertices: model.vertex_count() as u64,
             triangles: model.triangle_count() as u64,
-            ..Counts::of_plant(&plant)
+            ..Counts::from_plant(&plant)
         };
         let report = ItemReport { name, counts, ..ItemReport::default() };
         let level = Level { model, owners: Some(owners) };

@@ -21,7 +21,7 @@ static POOL: Mutex<Option<(u32, usize, Arc<rayon::ThreadPool>)>> = Mutex::new(No
 struct Threads(Option<Arc<rayon::ThreadPool>>);
 
 impl Threads {
-    fn of_process() -> Self {
+    fn for_process() -> Self {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
         let asked = THREADS.load(Ordering::Relaxed);
         let count = if asked == 0 { all() } else { asked };
@@ -73,7 +73,7 @@ pub(crate) fn compute<T: Send>(
 ) -> PyResult<T> {
     let (token, clock) = (CancelToken::new(), WallClock(Instant::now()));
     let budget = Budget { times: budget, raise: Some("budget") };
-    let threads = py.detach(Threads::of_process);
+    let threads = py.detach(Threads::for_process);
     std::thread::scope(|scope| {
         let (over, ended) = sync_channel::<()>(1);
         let own = token.clone();

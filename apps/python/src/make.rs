@@ -125,7 +125,7 @@ impl Base {
     }
 
     /// Returns a source of fields alone; file names are relative to a file.
-    pub(crate) fn of_fields(beside: std::path::PathBuf, trust_paths: bool) -> Self {
+    pub(crate) fn from_fields(beside: std::path::PathBuf, trust_paths: bool) -> Self {
         Self { preset: None, toml: Some((String::new(), beside)), trust_paths }
     }
 

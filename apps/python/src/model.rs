@@ -28,7 +28,7 @@ enum Of {
 pub(crate) struct RawModel(Of);
 
 impl RawModel {
-    pub(crate) fn of_plant(plant: Arc<Held>) -> Self {
+    pub(crate) fn from_plant(plant: Arc<Held>) -> Self {
         Self(Of::Plant(plant))
     }
 

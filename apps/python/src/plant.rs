@@ -180,7 +180,7 @@ impl RawPlant {
     }
 
     fn model(&self) -> RawModel {
-        RawModel::of_plant(Arc::clone(&self.0))
+        RawModel::from_plant(Arc::clone(&self.0))
     }
 
     /// Returns a coarser copy of the model.

@@ -118,7 +118,7 @@ pub(crate) fn read_stand(
         Ok((stand, StandReport::from(&report), warnings))
     })?;
     let (stand, source, warnings) = made.map_err(|e| e.into_exception(py))?;
-    RawStand::new(py, stand, &Base::of_fields(path, false), source, &warnings)
+    RawStand::new(py, stand, &Base::from_fields(path, false), source, &warnings)
 }
 
 /// Grows the stand of a spec.

@@ -190,7 +190,7 @@ impl GuidedGrowth {
     /// A message for people for numbers out of range.
     #[wasm_bindgen(constructor)]
     pub fn new(markers: u32, finer: f64, buds: u32) -> Result<Self, JsError> {
-        let plain = GuidedSpec::of_crown(Envelope::Sphere { centre: DVec3::Y * 5.0, radius_m: 5.0 });
+        let plain = GuidedSpec::from_crown(Envelope::Sphere { centre: DVec3::Y * 5.0, radius_m: 5.0 });
         let spec = GuidedSpec { markers, internode_m: plain.internode_m / finer, rounds: 200, ..plain };
         let (none, seed, run) = (Obstacles::none(), Seed::new(1), without_budget());
         let mut growing = Self(Growing::plant(&[DVec3::ZERO], &none, &spec, seed, &run)?);

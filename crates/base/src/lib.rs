@@ -52,7 +52,7 @@ pub use report::{Report, Stage, Warning, gathered};
 pub use seed::{Draw, Seed, Stream};
 pub use slip::{Slip, plainly};
 pub use sort::{Set, first_of, map_of, median, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
-pub use srgb::{byte_of_light, light_of_byte, linear_of_srgb, srgb_of_linear};
+pub use srgb::{byte_of_light, light_of_byte, linear_color, linear_of_srgb, srgb_of_linear};
 pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,
     map_until_cancelled,

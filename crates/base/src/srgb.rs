@@ -27,6 +27,12 @@ pub fn light_of_byte(byte: u8) -> f64 {
     TABLE.get_or_init(|| core::array::from_fn(of))[usize::from(byte)]
 }
 
+/// Returns the linear colour of sRGB bytes, as materials have it.
+#[expect(clippy::cast_possible_truncation, reason = "colours are f32 in materials")]
+pub fn linear_color(bytes: [u8; 3]) -> [f32; 3] {
+    bytes.map(|byte| light_of_byte(byte) as f32)
+}
+
 /// Returns the sRGB byte nearest to a linear light; values beyond 0 and 1 are clamped, NaN becomes 0.
 ///
 /// ```

@@ -18,7 +18,7 @@ const COUNTS: core::ops::RangeInclusive<usize> = 2..=kernel::MOST;
 /// use glam::DVec3;
 /// let points = [DVec3::ZERO, DVec3::new(1.0, 0.5, 0.1), DVec3::new(0.3, 0.4, 0.05)];
 /// let obb = Obb::fit(&points, 0.05).unwrap();
-/// let mut lattice = Lattice::of_box(&obb, [4, 4, 4])?;
+/// let mut lattice = Lattice::from_box(&obb, [4, 4, 4])?;
 /// let weights = Weights::new(&obb, [4, 4, 4], &points)?;
 /// lattice.points.iter_mut().for_each(|p| *p += DVec3::Y);
 /// let moved = weights.apply(&lattice, &base::Run::plain())?;
@@ -46,7 +46,7 @@ impl Lattice {
     ///
     /// # Errors
     /// [`BloomError::Lattice`] unless each count is 2 to 16.
-    pub fn of_box(obb: &Obb, counts: [usize; 3]) -> Result<Self, BloomError> {
+    pub fn from_box(obb: &Obb, counts: [usize; 3]) -> Result<Self, BloomError> {
         check_counts(counts)?;
         let points = Self::parameters(counts).map(|stu| obb.world(stu)).collect();
         Ok(Self { counts, points })
@@ -203,7 +203,7 @@ mod tests {
             let points = points(count);
             let obb = Obb::fit(&points, 0.05).unwrap_or(Obb { corner: DVec3::ZERO, axes: DVec3::AXES, size: [1.0; 3] });
             let w = Weights::new(&obb, [l, m, n], &points).unwrap();
-            let got = w.apply(&Lattice::of_box(&obb, [l, m, n]).unwrap(), &Run::plain()).unwrap();
+            let got = w.apply(&Lattice::from_box(&obb, [l, m, n]).unwrap(), &Run::plain()).unwrap();
             for (got, want) in got.iter().zip(&points) {
                 prop_assert!((*got - *want).length() < 1e-12, "{got} {want}");
             }
@@ -215,7 +215,7 @@ mod tests {
         let points = points(100);
         let obb = Obb::fit(&points, 0.05).unwrap();
         let map = |p: DVec3| DVec3::new(2.0 * p.x - p.y, p.z * 3.0 + 1.0, p.x + 0.1 * p.y);
-        let mut lattice = Lattice::of_box(&obb, [5, 3, 2]).unwrap();
+        let mut lattice = Lattice::from_box(&obb, [5, 3, 2]).unwrap();
         lattice.points.iter_mut().for_each(|p| *p = map(*p));
         let got = Weights::new(&obb, [5, 3, 2], &points).unwrap().apply(&lattice, &Run::plain()).unwrap();
         assert!(got.iter().zip(&points).all(|(g, &p)| (*g - map(p)).length() < 1e-11), "not affine");
@@ -226,7 +226,7 @@ mod tests {
         let points = points(37);
         let obb = Obb::fit(&points, 0.05).unwrap();
         let counts = [4, 4, 4];
-        let mut lattice = Lattice::of_box(&obb, counts).unwrap();
+        let mut lattice = Lattice::from_box(&obb, counts).unwrap();
         for (i, p) in lattice.points.iter_mut().enumerate() {
             *p += DVec3::new(ops::sin(i as f64), ops::cos(i as f64 * 2.0), ops::sin(i as f64 * 3.0));
         }
@@ -257,10 +257,10 @@ mod tests {
     #[test]
     fn wrong_counts_are_refused() {
         let obb = Obb::fit(&points(9), 0.05).unwrap();
-        assert!(matches!(Lattice::of_box(&obb, [1, 4, 4]), Err(BloomError::Lattice { .. })));
+        assert!(matches!(Lattice::from_box(&obb, [1, 4, 4]), Err(BloomError::Lattice { .. })));
         assert!(matches!(Weights::new(&obb, [4, 17, 4], &[]), Err(BloomError::Lattice { .. })));
         let w = Weights::new(&obb, [2, 2, 2], &points(9)).unwrap();
-        let other = Lattice::of_box(&obb, [3, 2, 2]).unwrap();
+        let other = Lattice::from_box(&obb, [3, 2, 2]).unwrap();
         assert!(w.apply(&other, &Run::plain()).is_err(), "other counts");
     }
 }

@@ -76,7 +76,7 @@ impl RigidMotion {
 
     /// Returns the motion that brings points nearest to their partners (least squares; Horn 1987), about the point
     /// `from`.
-    pub(crate) fn of_pairs(pairs: &[Places], from: DVec3) -> Self {
+    pub(crate) fn from_pairs(pairs: &[Places], from: DVec3) -> Self {
         let n = pairs.len().max(1) as f64;
         let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
         let b = pairs.iter().map(|p| p.1).sum::<DVec3>() / n;
@@ -246,7 +246,7 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
 }
 
 fn organ_step(organ: &ScanOrgan, pairs: &[Places], residual: ShapeError) -> OrganStep {
-    let mut pose = RigidMotion::of_pairs(pairs, organ.base);
+    let mut pose = RigidMotion::from_pairs(pairs, organ.base);
     if let Some(along) = register::rod(pairs) {
         // The roll of a stem about its axis is not observable.
         pose.turn = base::turn::between(along, (pose.turn * along).normalize_or(along));

@@ -141,7 +141,7 @@ fn fitted(
         is: 0,
         wanted: FEWEST_POINTS,
     })?;
-    let rest = Lattice::of_box(&obb, spec.counts)?;
+    let rest = Lattice::from_box(&obb, spec.counts)?;
     let mut start = rest.clone();
     start.points.iter_mut().for_each(|p| *p = rigid.apply(*p));
     let lattice = fit_lattice(from, partners, &obb, start, spec, run)?;

@@ -162,7 +162,7 @@ fn straight(
         pairs.extend(organ.points.iter().copied().zip(there));
         fits.push((&organ.name, fit, weights));
     }
-    let back = RigidMotion::of_pairs(&pairs, DVec3::ZERO).inverse();
+    let back = RigidMotion::from_pairs(&pairs, DVec3::ZERO).inverse();
     let mut out = Vec::new();
     for organ in &near.organs {
         let Some((_, fit, weights)) = fits.iter().find(|f| *f.0 == organ.name) else {

@@ -380,7 +380,7 @@ const fn coprime(mut a: u32, mut b: u32) -> bool {
 /// ```
 /// use glam::DVec2;
 /// let rhombus = [DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)];
-/// let (form, aspect) = bloom::PetalForm::of_outline(&rhombus).unwrap();
+/// let (form, aspect) = bloom::PetalForm::from_outline(&rhombus).unwrap();
 /// assert!((aspect - 0.6).abs() < 1e-9 && (form.half_width(0.25) - 0.5).abs() < 0.03);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -389,7 +389,7 @@ pub struct PetalForm(pub [f64; 17]);
 impl PetalForm {
     /// Makes a form from an outline with its root at the origin and its tip on +y; also returns its width as a share of
     /// its length. `None` for an outline without area.
-    pub fn of_outline(outline: &[DVec2]) -> Option<(Self, f64)> {
+    pub fn from_outline(outline: &[DVec2]) -> Option<(Self, f64)> {
         let tip = outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
         let sound = tip.is_finite() && tip > 0.0 && outline.len() >= 3;
         if !sound {

@@ -105,8 +105,8 @@ fn mark(model: &mut Model, (plant, layout): (&Plant, &Layout), skeleton: &Skelet
                 let row = corner as usize;
                 let place = DVec3::from_array(mesh.positions[row].map(f64::from));
                 marks[row] = match owner {
-                    Owner::Organ(id) => [f32::from(skeleton.of_organ(id)), 0.0, 1.0],
-                    Owner::Axes(axes) => skeleton.of_wood(plant, axes, place),
+                    Owner::Organ(id) => [f32::from(skeleton.joint_of_organ(id)), 0.0, 1.0],
+                    Owner::Axes(axes) => skeleton.mark_of_wood(plant, axes, place),
                 };
             }
             first = last;
@@ -192,12 +192,12 @@ impl Skeleton {
         mechanism.bodies.iter().map(joint).collect()
     }
 
-    fn of_organ(&self, organ: OrganId) -> u16 {
+    fn joint_of_organ(&self, organ: OrganId) -> u16 {
         self.mechanism.as_ref().map_or(0, |m| row(m.body_of_organ(organ)))
     }
 
     /// Returns the mark of a place on the surface of a tube along some axes.
-    fn of_wood(&self, plant: &Plant, axes: &[AxisId], place: DVec3) -> [f32; 3] {
+    fn mark_of_wood(&self, plant: &Plant, axes: &[AxisId], place: DVec3) -> [f32; 3] {
         let Some(mechanism) = &self.mechanism else { return [0.0, 0.0, 1.0] };
         let off = |axis: AxisId| geom::nearest_on_polyline3(plant.axis_points(axis), place).0;
         let nearest = match axes {

@@ -3,10 +3,10 @@
 use document::LeafMaker;
 use glam::DVec3;
 use leaf::{FullMarks, LeafSpec, Rays};
+use makers::LeafError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::leaves::LeafError;
 use crate::scene::{LeafInput, SceneError, leaf_input};
 
 /// One control ball.
@@ -38,12 +38,12 @@ pub struct LeafBalls {
 pub fn leaf_balls(maker: &LeafMaker) -> Result<LeafBalls, SceneError> {
     let (input, options) = leaf_input(maker)?;
     Ok(match &input {
-        LeafInput::Marks(marks) => of_marks(marks, &options.spec)?,
-        LeafInput::Rays(rays) => of_rays(rays, &options.spec)?,
+        LeafInput::Marks(marks) => balls_of_marks(marks, &options.spec)?,
+        LeafInput::Rays(rays) => balls_of_rays(rays, &options.spec)?,
     })
 }
 
-fn of_marks(marks: &FullMarks, spec: &LeafSpec) -> Result<LeafBalls, LeafError> {
+fn balls_of_marks(marks: &FullMarks, spec: &LeafSpec) -> Result<LeafBalls, LeafError> {
     let (shaped, half) = (spec.shaped(marks)?, spec.thickness.unwrap_or_default().radius());
     let ball = |row: usize, mark: usize, at: DVec3, thick: f64| {
         let [row, mark] = [row, mark].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
@@ -59,7 +59,7 @@ fn of_marks(marks: &FullMarks, spec: &LeafSpec) -> Result<LeafBalls, LeafError> 
     Ok(LeafBalls { balls, sides: leaf::ball_sides(marks).map(|side| side.to_array()) })
 }
 
-fn of_rays(rays: &Rays, spec: &LeafSpec) -> Result<LeafBalls, LeafError> {
+fn balls_of_rays(rays: &Rays, spec: &LeafSpec) -> Result<LeafBalls, LeafError> {
     let (shaped, half) = (spec.shaped_rays(rays)?, spec.thickness.unwrap_or_default().radius());
     let mut balls = Vec::new();
     for (i, ray) in shaped.rays.iter().enumerate() {

@@ -6,10 +6,11 @@ use bloom::{
     Settled, Stage,
 };
 use glam::DVec3;
+use makers::SeedlingError;
 use mesh::PointCloud;
 
 use crate::made::MadePlant;
-use crate::seedling::{SeedlingError, SeedlingOptions, make_seedling};
+use crate::scanned::{SeedlingOptions, make_seedling};
 
 /// Least points of an organ: no motion of a smaller one can be found.
 const FEWEST_POINTS: usize = 8;

@@ -9,20 +9,19 @@ use base::{Cancelled, Counted, Report, Run, Seed, Stage, Stopped, Warning};
 use document::{Photo, PlantEdit};
 use glam::DVec2;
 use ink::{Classified, Drawing, Ink, KeptMeasures, StrokeClass};
+use makers::LeafTemplate;
 use mesh::{Model, Texture};
 use plant::{AxisKind, OrganKind, Plant};
 use reading::{KeptStrokes, Kind, Reading, VeinReading};
 use sketch::{Built, KeptBodies, SketchSpec};
-use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
+use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced, coarser};
 
 use crate::checks::{Sketched, check_plant, check_sketch};
 use crate::levels::{LaidOut, LevelSpec, Levels, levels_of};
-use crate::lod::coarser;
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
-use crate::template::LeafTemplate;
 
 /// Placement of a drawing in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
 /// the viewer.
@@ -513,7 +512,7 @@ impl Evaluator {
             let sketched = Sketched { ink, reading, extent: self.extent(), is_guessed: self.is_guessed() };
             check_sketch(&sketched, &mut checks);
         }
-        let mut counts = Counts::of_plant(shown);
+        let mut counts = Counts::from_plant(shown);
         counts.vertices = model.value.vertex_count() as u64;
         counts.triangles = model.value.triangle_count() as u64;
         let digest = if self.preview || self.previewing { String::new() } else { shown.digest_hex() };

@@ -2,16 +2,15 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, OverBudget, Report, Run, Seed, Stopped};
+use base::{Report, Run, Seed};
 use document::PlantEdit;
-use geom::SplineError;
-use leaf::{FullMarks, Leaf, LeafPaint, LeafSpec, Marks, MarksError, RaysError, ScanError};
+use leaf::{FullMarks, Leaf, LeafSpec, Marks};
+use makers::{LeafError, LeafLook, LeafyPlant, ShootSpec};
 use mesh::{Texture, TriMesh};
-use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId, SplineBlade};
-use skin::{KeptShapes, LeafColours, LeafMeshSpec, ShapeMesh, SkinSpec, SurfacePictures};
+use plant::{Plant, PlantPaint, ShapeId};
+use skin::{KeptShapes, LeafColours, ShapeMesh, SkinSpec, SurfacePictures};
 
 use crate::checks::check_leaf;
-use crate::leaf_blade::leaf_blade;
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 use crate::shaping::shaped;
@@ -31,53 +30,8 @@ pub struct LeafOptions {
     pub edits: Vec<PlantEdit>,
 }
 
-/// Reason why no leaf was made.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LeafError {
-    /// The marks make no leaf.
-    #[error(transparent)]
-    Marks(#[from] MarksError),
-    /// The surface cannot be made.
-    #[error(transparent)]
-    Spline(#[from] SplineError),
-    /// The chief veins make no leaf.
-    #[error(transparent)]
-    Rays(#[from] RaysError),
-    /// The scan has no leaf.
-    #[error(transparent)]
-    Scan(#[from] ScanError),
-    /// The scan has more than one leaf.
-    #[error(
-        "the cloud shows {0} blades that part on necks of their own: it is a plant or a leaf of leaflets, not one blade. Cut \
-         one out of it, or make all of it as a plant of scans (docs/bloom.md)"
-    )]
-    Several(usize),
-    /// There is no leaf to put on a plant.
-    #[error("a plant needs at least one leaf")]
-    NoLeaves,
-    /// The user asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The result would exceed the budget.
-    #[error(transparent)]
-    OverBudget(#[from] OverBudget),
-}
-
-impl From<Stopped> for LeafError {
-    fn from(stopped: Stopped) -> Self {
-        match stopped {
-            Stopped::Cancelled(c) => Self::Cancelled(c),
-            Stopped::OverBudget(o) => Self::OverBudget(o),
-        }
-    }
-}
-
 /// Green of the stem, linear.
 const STEM: [f32; 3] = [0.18, 0.30, 0.07];
-
-/// Advice for a leaf with too many triangles.
-pub(crate) const COARSER: &str = "lower subdivisions or sides, or make fewer leaves";
 
 /// Makes a leaf and its meshes from marks (Wang et al. 2011).
 ///
@@ -109,58 +63,50 @@ pub fn make_leaf_of(
     run: &Run<'_>,
     mut report: Report,
 ) -> Result<MadePlant, LeafError> {
-    run.budget.check(Counted::Triangles, options.mesh().triangles(marks.rows.len()), COARSER)?;
-    let marks = options.spec.shaped(marks)?;
-    let leaf = report.stage("structure", run.clock, |_| Leaf::new(&marks, &options.spec))?;
-    run.cancel.check()?;
-    let texture = report.stage("mesh", run.clock, |_| leaf_texture(&leaf, options, seed, run));
-    let mut plant = Plant { name: name.into(), ..Plant::default() };
-    bear(&mut plant, leaf.blade(), None, options.paint([1.0; 3]), seed.number());
-    let (mut made, mesh) = finish(plant, &[texture], options, run, &mut report)?;
+    let (leafy, leaf, marks) = makers::build_leaf(name, marks, &options.look(), seed, run, &mut report)?;
+    let (mut made, mesh) = finish(leafy, options, run, &mut report)?;
     let told = leaf_report(&marks, &leaf, &mesh, options);
-    let crossings = geom::self_crossings(&leaf_blade(&leaf, &marks, 1.0).outline);
+    let crossings = geom::self_crossings(&leaf::leaf_blade(&leaf, &marks, 1.0).outline);
     made = made.check(|r| check_leaf(&told, Some(crossings), r));
     made.item.leaf = Some(told);
     Ok(made)
 }
 
-/// Adds a leaf that was measured in the plant's coordinates; its frame is that of its root and tip.
-pub(crate) fn bear(plant: &mut Plant, blade: SplineBlade, bearer: Option<NodeId>, paint: Paint, key: u64) {
-    let (blade, frame) = blade.framed();
-    let shape = plant.add_shape(Shape::Spline(Arc::new(blade)));
-    add_leaf(plant, shape, frame, bearer, paint, key);
+/// Makes a plant of leaves on one stem, see [`makers::build_shoot`].
+///
+/// # Errors
+/// [`LeafError`].
+pub fn make_shoot(
+    name: &str,
+    forms: &[FullMarks],
+    spec: &ShootSpec,
+    options: &LeafOptions,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<MadePlant, LeafError> {
+    let mut report = Report::default();
+    let leafy = makers::build_shoot(name, forms, spec, (&options.look(), seed), run, &mut report)?;
+    let (mut made, _) = finish(leafy, options, run, &mut report)?;
+    made.item.plant = Some(made.plant.measure());
+    Ok(made)
 }
 
-pub(crate) fn add_leaf(
-    plant: &mut Plant,
-    shape: ShapeId,
-    frame: Frame,
-    bearer: Option<NodeId>,
-    paint: Paint,
-    key: u64,
-) {
-    let (kind, flower, source) = (OrganKind::Leaf, None, None);
-    plant.organs.push(Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source });
-}
-
-/// Applies hand edits to a plant of measured leaves and makes its meshes, its report, and the mesh of its first leaf;
-/// `textures` are those of its forms.
+/// Applies hand edits to a plant of measured leaves and makes its meshes, its report, and the mesh of its first leaf.
 pub(crate) fn finish(
-    mut plant: Plant,
-    textures: &[Option<Arc<Texture>>],
+    LeafyPlant { mut plant, textures }: LeafyPlant,
     options: &LeafOptions,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<(MadePlant, ShapeMesh), LeafError> {
     debug_assert_eq!(plant.validate().next(), None, "a sound plant");
-    let veins = LeafColours::default().wilted(options.spec.wilt).vein.map(linear_of);
+    let veins = base::linear_color(LeafColours::default().wilted(options.spec.wilt).vein);
     plant.paint = PlantPaint { stem: Some(mean_of_axes(&plant).unwrap_or(STEM)), veins: Some(veins) };
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     let mut kept = KeptShapes::default();
     let skin = options.skin.clone();
     let worn = skin.worn.clone().always(skin.textures);
-    let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, worn, ..skin };
-    let pictures = SurfacePictures { leaves: textures, ..SurfacePictures::default() };
+    let spec = SkinSpec { leaf: options.look().mesh(), textures: false, variation: 0.0, worn, ..skin };
+    let pictures = SurfacePictures { leaves: &textures, ..SurfacePictures::default() };
     let model = report
         .stage("mesh", run.clock, |_| skin::skin_laid_out(&plant, &spec, pictures, Some(&mut kept), run));
     let model = model?;
@@ -192,49 +138,11 @@ fn mean_of_axes(plant: &Plant) -> Option<[f32; 3]> {
     (count > 0.0).then(|| [0, 1, 2].map(|k| colors.iter().map(|c| c[k]).sum::<f32>() / count))
 }
 
-pub(crate) fn leaf_texture(
-    leaf: &Leaf,
-    options: &LeafOptions,
-    seed: Seed,
-    run: &Run<'_>,
-) -> Option<Arc<Texture>> {
-    if let Some(picture) = &options.picture {
-        return Some(Arc::clone(picture));
-    }
-    (options.spec.texture == LeafPaint::Veins).then(|| {
-        let colours = LeafColours::default().wilted(options.spec.wilt);
-        let flat = leaf.blade().flat(options.spec.subdivisions as usize);
-        Arc::new(skin::vein_texture(&flat, &colours, 768, seed, run.executor))
-    })
-}
-
 impl LeafOptions {
-    /// Returns the fineness of the meshes of blade and veins.
-    pub(crate) fn mesh(&self) -> LeafMeshSpec {
-        let LeafSpec { rings, subdivisions, sides, caps, margin_vein, .. } = self.spec;
-        LeafMeshSpec {
-            subdivisions: subdivisions as usize,
-            sides: sides as usize,
-            rings,
-            caps,
-            margin: margin_vein,
-        }
+    /// Returns what the makers of leaves read of these options.
+    pub fn look(&self) -> LeafLook<'_> {
+        LeafLook { spec: &self.spec, picture: self.picture.as_ref() }
     }
-
-    /// Returns the paint of a leaf that is lighter or darker by `tint`: a texture keeps its colours, else it has one
-    /// colour.
-    pub(crate) fn paint(&self, tint: [f32; 3]) -> Paint {
-        if self.picture.is_some() || self.spec.texture == LeafPaint::Veins {
-            return Paint::Natural(tint);
-        }
-        let plain = LeafColours::default().wilted(self.spec.wilt).blade.map(linear_of);
-        Paint::Tinted([0, 1, 2].map(|k| plain[k] * tint[k]))
-    }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "colours are f32 in materials")]
-pub(crate) fn linear_of(byte: u8) -> f32 {
-    base::light_of_byte(byte) as f32
 }
 
 fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &LeafOptions) -> LeafReport {
@@ -268,21 +176,10 @@ pub(crate) fn swallowed(options: &LeafOptions, meshes: &ShapeMesh) -> Option<u64
     (options.spec.rings == geom::RingRule::Envelope).then_some(meshes.swallowed as u64)
 }
 
-base::coded!(LeafError {
-    Self::Spline(why) => "leaf-surface" { why => SplineError },
-    Self::Rays(why) => "leaf-veins" { why => RaysError },
-    Self::Scan(why) => "leaf-scan" { why => ScanError },
-    Self::Several(blades) => "scan-several" { blades },
-    Self::NoLeaves => "no-leaves" {},
-} wraps {
-    Self::Marks(e) => e, MarksError;
-    Self::Cancelled(e) => e, Cancelled;
-    Self::OverBudget(e) => e, OverBudget;
-});
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ShootSpec, leaf_blade, make_shoot};
+    use leaf::{LeafPaint, leaf_blade};
 
     fn read(k: u32) -> FullMarks {
         let path = format!("{}/../../fixtures/leaves/leaf{k}.csv", env!("CARGO_MANIFEST_DIR"));

@@ -8,10 +8,9 @@ use base::{Cancelled, Run, Stopped};
 use formats::{Assembly, Level};
 use mesh::{Copies, Model, Texture};
 use plant::{AxisKind, OrganKind, Plant};
-use skin::{Layout, SkinSpec};
+use skin::{Layout, SkinSpec, coarser};
 
 use crate::assembly::{AssemblyError, assemble};
-use crate::lod::coarser;
 
 /// A model, its plant, and the places of that plant's parts in the model.
 pub(crate) type LaidOut = (Model, (Plant, Layout));
@@ -97,7 +96,7 @@ pub(crate) fn level_of(
     level: u32,
     mesh: impl Fn(&Plant, &SkinSpec) -> Result<(Model, Layout), Stopped>,
 ) -> Result<LaidOut, Stopped> {
-    let mut last = Coarse::of_finest(fine);
+    let mut last = Coarse::from_finest(fine);
     let mut made = next_level((plant, skin, fine), 1, &mut last, &mesh)?;
     for at in 2..=level.min(MOST_LEVELS) {
         made = next_level((plant, skin, fine), at, &mut last, &mesh)?;
@@ -112,7 +111,7 @@ pub(crate) fn levels_of(
     count: u32,
     mesh: impl Fn(&Plant, &SkinSpec) -> Result<(Model, Layout), Stopped>,
 ) -> Result<Vec<LaidOut>, Stopped> {
-    let mut last = Coarse::of_finest(fine);
+    let mut last = Coarse::from_finest(fine);
     (1..=count.min(MOST_LEVELS))
         .map(|level| next_level((plant, skin, fine), level, &mut last, &mesh))
         .collect()
@@ -127,7 +126,7 @@ struct Coarse {
 }
 
 impl Coarse {
-    fn of_finest(fine: &Model) -> Self {
+    fn from_finest(fine: &Model) -> Self {
         Self { most: fine.triangle_count() / 2, detail: 1.0 }
     }
 }

@@ -19,42 +19,31 @@
 
 mod assembly;
 mod balls;
-mod beams;
 mod checks;
 mod days;
-mod drawn;
 mod engine;
 mod engine_nodes;
 mod evaluate;
 mod flowers;
-mod leaf_blade;
 mod leaves;
 mod levels;
 mod light_source;
 mod lit;
 mod lit_scene;
-mod lod;
 mod made;
 mod make;
 mod motion;
 mod opening;
-mod parts;
 mod refusal;
 mod report;
 mod robot;
 mod scanned;
 mod scene;
 mod schemas;
-mod seedling;
 mod shaping;
-mod shoot;
-mod site;
 mod split;
 mod stands;
 mod structure;
-mod survey;
-mod survey_spec;
-mod template;
 mod trees;
 mod venation;
 mod weight;
@@ -69,15 +58,13 @@ pub use base::{
 };
 pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law, check_read};
 pub use days::ScannedDays;
-pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
 pub use engine::{
     Engine, EngineSetting, ExportChoice, PrintedPlant, WrongEngineFile, name_after, print_plant,
 };
 pub use engine_nodes::write_engine_glb;
 pub use evaluate::{Evaluator, FrontView, make_from_sketch, make_levels_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
-pub use leaf_blade::leaf_blade;
-pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
+pub use leaves::{LeafOptions, make_leaf, make_leaf_of, make_shoot};
 pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
 pub use light_source::{
     LightSourceError, LightSourceSpec, LightSources, PlaceOnDay, SkyShape, SourceFigures,
@@ -86,12 +73,10 @@ pub use lit::{
     EnergyFigures, LIGHT_SCALE, LightFigures, LightOptions, LightUnit, LitOrgan, LitStand, light_stand,
 };
 pub use lit_scene::{shown_plants, stood_plants, without_textures};
-pub use lod::coarser;
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
-pub use parts::{NOTHING, PART_OF_SOIL, PART_OF_STONE, PARTS, part_of_axis, part_of_organ};
 pub use refusal::Refusal;
 pub use report::{
     CheckReport, Counts, EngineReport, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport,
@@ -99,16 +84,13 @@ pub use report::{
     SideWord, StrokeReport, TimingsMs,
 };
 pub use robot::{Robot, RobotError, write_robot};
-pub use scanned::make_leaf_from_scan;
+pub use scanned::{SeedlingOptions, make_leaf_from_scan, make_seedling};
 pub use scene::{
-    PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_copies, scene_model, standing,
-    standing_at, tree_settings, tree_spec,
+    PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, standing, standing_at, tree_settings,
+    tree_spec,
 };
 pub use schemas::{flower_schema, leaf_schema, material_schema, sketch_schema, skin_schema};
-pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surface_places};
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
-pub use shoot::{ShootSpec, make_shoot};
-pub use site::{PotSpec, SceneSite, SceneSiteSpec, make_site};
 pub use split::{SplitError, split};
 pub use stands::{
     ForestPlan, ForestTilesError, ForestTilesSpec, LIMITS, Misfits, ModelsOf, Nursery, NurseryError,
@@ -118,9 +100,6 @@ pub use stands::{
     stand_map,
 };
 pub use structure::{write_structure, write_structure_with};
-pub use survey::{Stood, Surveyed, survey, survey_stand, triangle_labels};
-pub use survey_spec::{SurveyError, SurveySpec};
-pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
     GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
@@ -134,11 +113,22 @@ pub use weight::FileForm;
 
 pub use base::coded;
 pub use growth::{Bark, BladeSpec, BlossomSpec, Look, TreeSpec};
+pub use leaf::leaf_blade;
+pub use makers::{
+    DrawnKind, DrawnLine, LeafError, LeafTemplate, OrganFit, SeedlingError, ShootSpec, TemplateError,
+    drawing_of, drawn, surface_places,
+};
+pub use mesh::{scene_copies, scene_model};
+pub use scan::{Stood, SurveyError, SurveySpec, Surveyed, survey, survey_stand};
+pub use skin::{
+    NOTHING, PART_OF_SOIL, PART_OF_STONE, PARTS, PotSpec, SceneSite, SceneSiteSpec, coarser, make_site,
+    part_of_axis, part_of_organ, triangle_labels,
+};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {
-    bloom, document, forest, formats, geom, glam, growth, ink, leaf, light, mechanics, mesh, plant, reading,
-    render, scan, shape, sketch, skin, spec,
+    bloom, document, forest, formats, geom, glam, growth, ink, leaf, light, makers, mechanics, mesh, plant,
+    reading, render, scan, shape, sketch, skin, spec,
 };
 
 /// Version that is written into reports and files.

@@ -155,14 +155,14 @@ impl LightSources {
     pub fn measured(beams: impl IntoIterator<Item = (SunPosition, f64)>) -> Result<Self, LightSourceError> {
         let mut all = Beams::default();
         beams.into_iter().try_for_each(|(from, horizontal)| all.add_beam(from, horizontal))?;
-        Self::of_measured(all)
+        Self::from_measured(all)
     }
 
     /// Makes the same of beams that were added one by one.
     ///
     /// # Errors
     /// [`LightError::Dark`].
-    pub fn of_measured(beams: Beams) -> Result<Self, LightSourceError> {
+    pub fn from_measured(beams: Beams) -> Result<Self, LightSourceError> {
         if beams.horizontal() <= 0.0 {
             return Err(LightError::Dark.into());
         }

@@ -11,10 +11,9 @@ use light::{
     Absorption, Beams, EnergyBalance, LightError, LightSpec, LitScene, Optics, ReceiverLight, absorb,
 };
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Standing};
+use scan::Stood;
 use serde::Serialize;
-
-use crate::parts::{NOTHING, PARTS, part_is_of_axis, part_of_axis, part_of_organ};
-use crate::survey::{Stood, triangle_labels};
+use skin::{NOTHING, PARTS, part_is_of_axis, part_of_axis, part_of_organ, triangle_labels};
 
 /// Unit of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

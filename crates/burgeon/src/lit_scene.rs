@@ -4,7 +4,7 @@ use document::{CommandError, Document, DocumentPlant, Editor, Maker, PlantId, Sk
 use skin::SkinSpec;
 
 use crate::scene::{SceneEvaluator, standing};
-use crate::survey::Stood;
+use scan::Stood;
 
 /// Returns a document whose plants have no textures, which do not affect light. Numbers of plants stay.
 ///

@@ -73,7 +73,7 @@ impl MadePlant {
             counts: Counts {
                 vertices: model.vertex_count() as u64,
                 triangles: model.triangle_count() as u64,
-                ..Counts::of_plant(&plant)
+                ..Counts::from_plant(&plant)
             },
             timings_ms: TimingsMs::from_report(report),
             edits,

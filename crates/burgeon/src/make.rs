@@ -5,10 +5,9 @@ use base::LiteMap;
 use base::{Cancelled, OverBudget, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
 use ink::StrokeClass;
+use makers::LeafTemplate;
 use sketch::SketchSpec;
 use skin::{SkinSpec, Worn};
-
-use crate::template::LeafTemplate;
 
 /// Classes that the user set, by stroke index in the drawing.
 pub type ClassOverrides = LiteMap<u32, StrokeClass>;
@@ -36,7 +35,7 @@ pub struct SketchOptions {
 impl SketchOptions {
     /// Returns the options of a sketch of a document; colours follow its seed as everything else does. The defaults for
     /// a plant of another maker. A leaf that it bears is not included: [`crate::SceneEvaluator`] finds it.
-    pub fn of_plant(plant: &DocumentPlant) -> Self {
+    pub fn from_plant(plant: &DocumentPlant) -> Self {
         let settings = plant.settings();
         let Some(sketch) = settings.sketch() else { return Self::default() };
         Self {

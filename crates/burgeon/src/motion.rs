@@ -46,7 +46,7 @@ pub fn colour_points(model: &mut Model, colors: &[Vec<[u8; 3]>]) {
         if colors.is_empty() || colors.len() != part.mesh.positions.len() {
             continue;
         }
-        part.mesh.colors = colors.iter().map(|c| c.map(crate::leaves::linear_of)).collect();
+        part.mesh.colors = colors.iter().map(|c| base::linear_color(*c)).collect();
         if let Some(look) = model.materials.get_mut(part.material.index()) {
             look.base_color = [1.0; 3];
         }
@@ -59,7 +59,7 @@ pub fn cloud_model(name: &str, cloud: &PointCloud) -> Model {
     for p in &cloud.points {
         mesh.push(*p);
     }
-    mesh.colors = cloud.colors.iter().map(|c| c.map(crate::leaves::linear_of)).collect();
+    mesh.colors = cloud.colors.iter().map(|c| base::linear_color(*c)).collect();
     let look =
         Material::plain("points", MaterialKind::Other, [if cloud.colors.is_empty() { 0.5 } else { 1.0 }; 3]);
     Model {

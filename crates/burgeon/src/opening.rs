@@ -77,7 +77,7 @@ impl OpeningPlant {
         run: &Run<'_>,
     ) -> Result<Self, OpeningError> {
         let made = make_from_sketch(drawing, options, seed, run)?;
-        Self::of_made(&drawing.name, (&made.plant, &made.item), &options.skin)
+        Self::from_made(&drawing.name, (&made.plant, &made.item), &options.skin)
     }
 
     /// Prepares the flowers of a plant already made of a drawing, as [`OpeningPlant::new`] does: plant and entry of the
@@ -85,7 +85,7 @@ impl OpeningPlant {
     ///
     /// # Errors
     /// [`OpeningError`].
-    pub fn of_made(
+    pub fn from_made(
         name: &str,
         (plant, item): (&Plant, &ItemReport),
         skin: &SkinSpec,
@@ -256,7 +256,7 @@ fn placed(
     let mut blades: Vec<(f64, PetalForm, f64)> = petals
         .filter_map(|o| match plant.shapes.get(o.shape.index())? {
             Shape::Blade(b) => {
-                let (form, aspect) = PetalForm::of_outline(&b.outline)?;
+                let (form, aspect) = PetalForm::from_outline(&b.outline)?;
                 Some((b.length() * o.scale, form, aspect))
             }
             _ => None,

@@ -295,7 +295,7 @@ pub struct Counts {
 
 impl Counts {
     /// Counts a plant; mesh numbers stay 0.
-    pub fn of_plant(plant: &Plant) -> Self {
+    pub fn from_plant(plant: &Plant) -> Self {
         let organs = |kind| Some(plant.organs.iter().filter(|o| o.kind == kind).count() as u64);
         let is_branch = |kind| matches!(kind, AxisKind::Branch | AxisKind::Twig | AxisKind::Stem);
         Self {

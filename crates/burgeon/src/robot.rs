@@ -14,7 +14,7 @@ use skin::SkinSpec;
 
 use crate::PRESETS;
 use crate::report::RobotReport;
-use crate::survey::triangle_labels;
+use skin::triangle_labels;
 
 /// Reason why a plant cannot be written as a robot.
 #[derive(Debug, thiserror::Error)]

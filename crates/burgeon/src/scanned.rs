@@ -1,19 +1,34 @@
-//! The scan of one leaf -> a plant.
+//! Scans of one leaf or of the organs of a plant -> a plant with its meshes and its report.
 
-use std::sync::Arc;
-
-use base::{Report, Run, Seed, ops};
-use geom::{Ball, BallBSpline, SplineError};
+use base::{Report, Run};
+use bloom::{OrganPoints, ShapeError};
 use glam::DVec3;
 use leaf::{LeafPaint, LeafSpec, ScanLeaf, ScanSpec};
-use mesh::{PointCloud, Texture};
-use plant::{AxisKind, NodeId, Paint, Plant, Shape, Sheet, Vein, Venation};
-use skin::CloudColours;
+use makers::{LeafError, OrganFit, SeedlingError};
+use mesh::PointCloud;
 
-use crate::checks::check_leaf;
-use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
+use crate::checks::{check_leaf, check_organs};
+use crate::leaves::{LeafOptions, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
+
+/// Options for making a plant of the organs of a scan.
+#[derive(Clone, Debug)]
+pub struct SeedlingOptions {
+    /// Settings for finding its blades.
+    pub scan: ScanSpec,
+    /// Hand edits and meshes.
+    pub leaf: LeafOptions,
+}
+
+impl Default for SeedlingOptions {
+    fn default() -> Self {
+        let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
+        // Leaves of a seedling are small: half of the grid of a leaf that was scanned by itself.
+        let scan = ScanSpec { rows: 32, columns: 21, ..ScanSpec::default() };
+        Self { scan, leaf: LeafOptions { spec, ..LeafOptions::default() } }
+    }
+}
 
 /// Distance from the leaf, as a share of its length, beyond which points are reported: a torn and folded leaf has 0.03.
 const UNLIKE: f64 = 0.06;
@@ -31,15 +46,10 @@ pub fn make_leaf_from_scan(
     spec: &ScanSpec,
     run: &Run<'_>,
 ) -> Result<(MadePlant, ScanLeaf), LeafError> {
+    let plain = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
+    let options = LeafOptions { spec: plain, ..LeafOptions::default() };
     let mut report = Report::default();
-    let alone = alone(cloud, &mut report);
-    let cloud = alone.as_ref().unwrap_or(cloud);
-    let points = cloud.points.as_slice();
-    let blades = bloom::blades(points, run)?;
-    if blades > 1 {
-        return Err(LeafError::Several(blades));
-    }
-    let found = report.stage("structure", run.clock, |r| leaf::fit_scan(points, spec, run, r))?;
+    let (leafy, found) = makers::build_scanned_leaf(name, cloud, spec, &options.look(), run, &mut report)?;
     let line = found.midrib();
     let rms_mm = LeafFit::from_distances(&found.distances).rms_mm;
     if rms_mm > UNLIKE * 1e3 * geom::polyline_length3(&line) {
@@ -50,22 +60,9 @@ pub fn make_leaf_from_scan(
             "the cloud is {rms_mm} mm from the leaf that was found in it: is it one leaf, laid open? Cut one leaf out of it"
         );
     }
-    let mut plant = Plant { name: name.into(), ..Plant::default() };
-    let colours = report.stage("mesh", run.clock, |_| colours_of(points, &cloud.colors, run));
-    let bearer = found.stalk.as_ref().and_then(|stalk| add_stalk(&mut plant, stalk, colours.as_ref()));
+    let (mut made, mesh) = finish(leafy, &options, run, &mut report)?;
     let n = found.columns;
     let rows = found.grid.len() / n;
-    let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
-    let options = LeafOptions { spec, ..LeafOptions::default() };
-    let mut textures = Vec::new();
-    let sheet =
-        report.stage("mesh", run.clock, |_| sheet_of(&found, colours.as_ref(), &mut textures, run))?;
-    let paint = painted(&sheet, &options);
-    if let Some((sheet, frame)) = sheet.framed() {
-        let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
-        add_leaf(&mut plant, shape, frame, bearer, paint, 1);
-    }
-    let (mut made, mesh) = finish(plant, &textures, &options, run, &mut report)?;
     let width = found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
     let mut outline = found.outline();
     outline.extend(outline.first().copied());
@@ -93,90 +90,26 @@ pub fn make_leaf_from_scan(
     Ok((made, found))
 }
 
-/// Returns the cloud without a table and without separate things; `None` if it has neither.
-fn alone(cloud: &PointCloud, report: &mut Report) -> Option<PointCloud> {
-    let above = bloom::on_table(&cloud.points, Seed::new(1)).map(|rows| cloud.select(&rows));
-    if let Some(above) = &above {
-        base::warn!(
-            report,
-            "scan-table",
-            { points = cloud.points.len() - above.points.len() },
-            "{points} points of a plane below the leaf (a table) were left out"
-        );
-    }
-    let left = above.as_ref().unwrap_or(cloud);
-    let one = bloom::largest_thing(&left.points).map(|rows| left.select(&rows));
-    if let Some(one) = &one {
-        base::warn!(
-            report,
-            "scan-apart",
-            { points = left.points.len() - one.points.len() },
-            "{points} points of other things stand apart from the largest one, which was taken for the leaf: cut the leaf out \
-             of the cloud if it is another"
-        );
-    }
-    one.or(above)
-}
-
-/// Returns the colours of points, if there is one for each point and they are not all black.
-pub(crate) fn colours_of(points: &[DVec3], colors: &[[u8; 3]], run: &Run<'_>) -> Option<CloudColours> {
-    (points.len() == colors.len()).then(|| CloudColours::new(points, colors, run.executor)).flatten()
-}
-
-/// Returns the paint of a blade of a scan: a texture has its own colours.
-pub(crate) fn painted(sheet: &Sheet, options: &LeafOptions) -> Paint {
-    if sheet.form.is_some() { Paint::Natural([1.0; 3]) } else { options.paint([1.0; 3]) }
-}
-
-/// Returns the blade that was found, in its place in the scan; with colours, its texture is added to `textures`.
-pub(crate) fn sheet_of(
-    found: &ScanLeaf,
-    colours: Option<&CloudColours>,
-    textures: &mut Vec<Option<Arc<Texture>>>,
+/// Makes a plant of the organs of a scan, each with its points, metres, +Y up; the one called `stem` bears the others.
+///
+/// Organs whose points have colours are painted with them. An organ of too few points for a blade becomes an axis, with
+/// a warning. The error is that of the surface against all points. Cost: n log n.
+///
+/// # Errors
+/// [`SeedlingError`].
+pub fn make_seedling(
+    name: &str,
+    organs: &[OrganPoints],
+    options: &SeedlingOptions,
     run: &Run<'_>,
-) -> Result<Sheet, SplineError> {
-    let n = found.columns;
-    let rows = found.grid.len() / n;
-    let mut sheet = Sheet {
-        // The grid's rows run from left to right.
-        points: found.grid.chunks(n).flat_map(|row| row.iter().rev().copied()).collect(),
-        across: (0..n).rev().map(|j| j as f64 / (n - 1) as f64).collect(),
-        along: (0..rows).map(|i| i as f64 / (rows - 1) as f64).collect(),
-        colors: Vec::new(),
-        form: None,
-        veins: Venation { fine: vec![midrib(found, &found.midrib())?], ..Venation::default() },
-    };
-    if let Some(colours) = colours {
-        sheet.form = u32::try_from(textures.len()).ok();
-        textures.push(Some(Arc::new(colours.sheet(&sheet, run.executor))));
-    }
-    Ok(sheet)
-}
-
-/// Returns the midrib, thinner towards the tip; its thickness is known only from a stalk.
-fn midrib(found: &ScanLeaf, line: &[DVec3]) -> Result<Vein, SplineError> {
-    let base = found.marks.rows.last().and_then(|r| r.midrib).unwrap_or(0.001) * 0.5;
-    let last = (line.len() - 1).max(1) as f64;
-    let ball = |(k, &p): (usize, &DVec3)| Ball::new(p, base * (1.0 - 0.8 * k as f64 / last));
-    let balls: Vec<Ball> = line.iter().enumerate().map(ball).collect();
-    let curve = BallBSpline::fit(&balls, 12)?;
-    let marks = evenly(&curve, 60);
-    Ok(Vein { curve, marks })
-}
-
-/// Adds the stalk as an axis from its lower end to the blade; returns its last node.
-fn add_stalk(plant: &mut Plant, stalk: &BallBSpline, colours: Option<&CloudColours>) -> Option<NodeId> {
-    let balls: Vec<Ball> = evenly(stalk, 40).into_iter().rev().map(|t| stalk.ball(t)).collect();
-    let points: Vec<DVec3> = balls.iter().map(|b| b.centre).collect();
-    let axis = plant.add_axis(AxisKind::Petiole, None, 1, &points, None);
-    plant.nodes.radius_m = balls.iter().map(|b| b.radius).collect();
-    if let Some(colours) = colours {
-        plant.axes[axis.index()].colors = colours.along(&points, &plant.nodes.radius_m);
-    }
-    plant.axis(axis).node_ids().last()
-}
-
-fn evenly(curve: &BallBSpline, steps: u32) -> Vec<f64> {
-    let (a, b) = curve.domain();
-    (0..=steps).map(|k| ops::lerp(a, b, f64::from(k) / f64::from(steps))).collect()
+) -> Result<(MadePlant, Vec<OrganFit>, ShapeError), SeedlingError> {
+    let mut report = Report::default();
+    let look = options.leaf.look();
+    let (leafy, fits) = makers::build_seedling(name, organs, &options.scan, &look, run, &mut report)?;
+    let (made, _) = finish(leafy, &options.leaf, run, &mut report)?;
+    let counts: Vec<usize> = organs.iter().map(|o| o.points.len()).collect();
+    let made = made.check(|r| check_organs(&counts, r));
+    let all: Vec<DVec3> = organs.iter().flat_map(|o| o.points.iter().copied()).collect();
+    let error = bloom::compare(&all, &makers::surface_places(&made.model), run)?;
+    Ok((made, fits, error))
 }

@@ -17,22 +17,22 @@ use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, Rays, ThicknessRule};
-use mesh::{Copies, CopyPlace, MaterialId, Model, Standing};
+use mesh::{Copies, Model, Standing};
 use plant::{AxisId, Plant};
 use skin::{FoliageStyle, Layout, SkinSpec, Worn};
 
 pub use self::error::SceneError;
 use crate::evaluate::{Evaluator, FrontView};
 use crate::flowers::{FlowerOptions, make_flower, untold_flower};
-use crate::leaves::{LeafError, LeafOptions, make_leaf_of};
+use crate::leaves::{LeafOptions, make_leaf_of};
 use crate::levels::{LevelSpec, Levels};
 use crate::made::{MadePlant, coarse, digest};
 use crate::make::{SketchOptions, worn};
 use crate::opening::OpeningPlant;
 use crate::report::ItemReport;
-use crate::template::LeafTemplate;
 use crate::trees::{TreeEvaluator, TreeOptions};
 use crate::venation::make_ray_leaf;
+use makers::{LeafError, LeafTemplate};
 
 /// Results of one plant.
 #[derive(Clone, Copy, Debug)]
@@ -382,9 +382,9 @@ impl SceneEvaluator {
                 let (input, options) = leaf_input(l)?;
                 let lent = match &input {
                     LeafInput::Marks(marks) => {
-                        LeafTemplate::of_marks(marks, &options, plant.settings().seed, run)?
+                        LeafTemplate::from_marks(marks, &options.look(), plant.settings().seed, run)?
                     }
-                    LeafInput::Rays(rays) => match LeafTemplate::of_rays(rays, &options, run)? {
+                    LeafInput::Rays(rays) => match LeafTemplate::from_rays(rays, &options.look(), run)? {
                         Ok(lent) => lent,
                         Err(_) => return Err(none()),
                     },
@@ -394,7 +394,7 @@ impl SceneEvaluator {
             }
             Maker::Leaf(_) => made.lent.clone(),
             // The leaf as it was drawn: hand edits may have removed all leaves.
-            _ => made.sketch.drawn().and_then(LeafTemplate::of_plant),
+            _ => made.sketch.drawn().and_then(LeafTemplate::from_plant),
         };
         lent.map(Some).ok_or_else(none)
     }
@@ -566,7 +566,7 @@ impl Made {
         anew: bool,
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
-        let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::of_plant(plant) };
+        let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::from_plant(plant) };
         options.skin.wind = from.wind;
         options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
         let drawing = plant.drawing();
@@ -585,7 +585,7 @@ impl Made {
             (Some(day), Some(plant)) => {
                 if self.opening.is_none() {
                     let made = (plant, &self.item);
-                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
+                    self.opening = Some(OpeningPlant::from_made(&drawing.name, made, &options.skin)?);
                 }
                 if let Some(opening) = self.opening.as_mut().filter(|_| changed || opened) {
                     let open = opening.make_on_day(day, &opening.law(), from.seed, run)?;
@@ -735,67 +735,4 @@ pub fn standing_at<'a>(name: &'a str, model: &'a Model, placement: &document::Pl
     let (s, c) = base::ops::sin_cos(0.5 * placement.yaw_deg * (base::ops::PI / 180.0));
     let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
     Standing { name, model, position: placement.position, turn, scale: placement.scale }
-}
-
-/// Joins the models of a scene into one, each in its place. Parts carry the name of their plant where there are
-/// several.
-///
-/// Guaranteed: for one plant that stands at the origin, the model itself, bit for bit.
-pub fn scene_model(name: &str, plants: &[Standing<'_>]) -> Model {
-    if let [only] = plants
-        && only.is_home()
-    {
-        return Model { name: name.into(), ..only.model.clone() };
-    }
-    let mut whole = Model { name: name.into(), ..Model::default() };
-    for (k, plant) in plants.iter().enumerate() {
-        let first = whole.materials.len();
-        let own = |what: &str| {
-            if plants.len() > 1 { format!("{}-{}-{what}", k + 1, plant.name) } else { what.to_owned() }
-        };
-        whole.materials.extend(plant.model.materials.iter().map(|m| {
-            let mut m = m.clone();
-            m.name = own(&m.name);
-            m
-        }));
-        for part in &plant.model.parts {
-            let mut part = part.clone();
-            for p in part.mesh.positions.iter_mut().chain(&mut part.mesh.pivots) {
-                let at = plant.turn * (DVec3::from_array(p.map(f64::from)) * plant.scale) + plant.position;
-                *p = at.as_vec3().to_array();
-            }
-            for n in &mut part.mesh.normals {
-                *n = (plant.turn * DVec3::from_array(n.map(f64::from))).as_vec3().to_array();
-            }
-            part.name = own(&part.name);
-            part.material = MaterialId::new(first + part.material.index());
-            whole.parts.push(part);
-        }
-    }
-    whole
-}
-
-/// Returns the leaves of plants in their places, as [`scene_model`] joins what is left of the plants. `copies`: those
-/// of each plant.
-pub fn scene_copies(plants: &[Standing<'_>], copies: &[&[Copies]]) -> Vec<Copies> {
-    let (mut all, mut first) = (Vec::new(), 0);
-    for (k, (plant, copies)) in plants.iter().zip(copies).enumerate() {
-        for copy in *copies {
-            let name = if plants.len() > 1 {
-                format!("{}-{}-{}", k + 1, plant.name, copy.name)
-            } else {
-                copy.name.clone()
-            };
-            let places = copy.places.iter().map(|p| CopyPlace {
-                at: plant.turn * (p.at * plant.scale) + plant.position,
-                turn: plant.turn * p.turn,
-                scale: plant.scale * p.scale,
-                color: p.color,
-            });
-            let material = MaterialId::new(first + copy.material.index());
-            all.push(Copies { name, material, mesh: copy.mesh.clone(), places: places.collect() });
-        }
-        first += plant.model.materials.len();
-    }
-    all
 }

@@ -84,7 +84,7 @@ fn parts(document: &Document, id: PlantId, run: &Run<'_>) -> Result<Vec<NewPlant
     if !plant.settings().edits.is_empty() {
         return Err(SplitError::Edited { name: name() });
     }
-    let mut options = SketchOptions::of_plant(plant);
+    let mut options = SketchOptions::from_plant(plant);
     let (reading, front) = looked_at(&plant.drawing(), &options, plant, run)?;
     if reading.plants.len() < 2 {
         return Err(SplitError::OnePlant { name: name() });

@@ -1,11 +1,10 @@
 //! Chief veins with a common start -> a model: palmate and parallel leaves.
 
-use base::{Counted, Report, Run};
-use leaf::{RayLeaf, Rays};
-use plant::{Paint, Plant, VeinShade};
-use skin::LeafColours;
+use base::{Report, Run};
+use leaf::Rays;
+use makers::{LeafError, RayLeafParts};
 
-use crate::leaves::{LeafError, LeafOptions, bear, finish};
+use crate::leaves::{LeafOptions, finish, swallowed};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 
@@ -23,32 +22,9 @@ pub fn make_ray_leaf(
     run: &Run<'_>,
 ) -> Result<MadePlant, LeafError> {
     let mut report = Report::default();
-    let rays = &options.spec.shaped_rays(rays)?;
-    let leaf = report.stage("structure", run.clock, |_| {
-        RayLeaf::new(rays, options.spec.thickness.unwrap_or_default()).map(|mut leaf| {
-            leaf.add_side_veins(rays, options.side_veins as usize);
-            leaf
-        })
-    })?;
-    run.cancel.check()?;
-    let colours = LeafColours::default().wilted(options.spec.wilt);
-    let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));
-    // A fiftieth of the leaf: the visible width of the pale band along a chief vein; less where veins are close
-    // together.
-    let apart = leaf.veins.windows(2).map(|w| {
-        let at = |v: &plant::Vein| v.curve.ball(0.5).centre;
-        at(&w[0]).distance(at(&w[1]))
-    });
-    let reach = apart.fold(0.02 * rays.length(), |reach, d| reach.min(0.3 * d)).max(1e-9);
-    let shade = VeinShade { vein, blade, reach_m: reach };
-    let spans = leaf.veins.iter().chain(&leaf.sides).map(|v| v.marks.len().saturating_sub(1)).sum::<usize>();
-    let (steps, sides) = (u64::from(options.spec.subdivisions), u64::from(options.spec.sides));
-    let squares = (leaf.blade.columns_at().len() * leaf.blade.rows_at().len()) as u64;
-    let triangles = 2 * (spans as u64 * steps * sides + squares * steps * steps);
-    run.budget.check(Counted::Triangles, triangles, "lower subdivisions, sides or side-veins")?;
-    let mut plant = Plant { name: name.into(), ..Plant::default() };
-    bear(&mut plant, leaf.blade(shade), None, Paint::Tinted([1.0; 3]), 1);
-    let (mut made, meshes) = finish(plant, &[], options, run, &mut report)?;
+    let built = makers::build_ray_leaf(name, rays, (&options.look(), options.side_veins), run, &mut report)?;
+    let RayLeafParts { leafy, leaf, rays } = built;
+    let (mut made, meshes) = finish(leafy, options, run, &mut report)?;
     let (us, vs) = (leaf.blade.columns_at(), leaf.blade.rows_at());
     let mut distances = Vec::new();
     for (ray, &u) in rays.rays.iter().rev().zip(us) {
@@ -67,7 +43,7 @@ pub fn make_ray_leaf(
         blade: counts(&meshes.surface, meshes.blade_faces),
         fit_error: LeafFit::from_distances(&distances),
         vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
-        swallowed_rings: crate::leaves::swallowed(options, &meshes),
+        swallowed_rings: swallowed(options, &meshes),
         crossing_rings: Some(meshes.crossing as u64),
         scan: None,
     };

@@ -222,7 +222,7 @@ impl Default for FlowerMaker {
 
 impl FlowerMaker {
     /// Returns a flower that comes with the program, on the day of `default`; `None` for an unknown species.
-    pub fn of_preset(name: &str) -> Option<Self> {
+    pub fn from_preset(name: &str) -> Option<Self> {
         let spec = Arc::new(bloom::preset(name)?);
         Some(Self { preset: Some(name.into()), spec, ..Self::default() })
     }

@@ -460,7 +460,7 @@ impl SkinV1 {
     pub(crate) fn spec(self) -> Result<SkinSpec, SettingFault> {
         let petals = match self.petals.as_deref() {
             None => None,
-            Some(word) => Some(PetalColor::ALL.into_iter().find(|c| c.word() == word).ok_or_else(|| {
+            Some(word) => Some(PetalColor::from_word(word).ok_or_else(|| {
                 let known = PetalColor::ALL.map(PetalColor::word).join(", ");
                 SettingFault::Petals { word: word.into(), known }
             })?),

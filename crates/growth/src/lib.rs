@@ -22,12 +22,14 @@
 //! | `scars` | stubs, knots, burls, hollows and broken limbs on stems |
 //! | `surface_roots` | roots that run along the ground from the foot of a stem |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
+//! | `blossom` | flowers in place of leaves |
 //! | `species` | rules fitted to measured trees so that they branch alike, and the agreement of both |
 //! | `spec`, `look` | [`TreeSpec`]: all settings of a tree, and its appearance |
 //! | `tree` | the whole process: [`grow`] |
 
 mod arrangement;
 mod beside;
+mod blossom;
 mod colonize;
 mod competition;
 mod envelope;
@@ -58,6 +60,7 @@ mod wood;
 
 pub use self::spec::{Method, TreeSpec};
 pub use arrangement::Arrangement;
+pub use blossom::add_blossom;
 pub use colonize::{ColonizeSpec, Colonized, PointFate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};

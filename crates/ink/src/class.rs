@@ -36,48 +36,25 @@ pub enum StrokeClass {
     Other,
 }
 
-impl StrokeClass {
-    /// Every class, in the order of the trained model's label numbers.
-    pub const ALL: [Self; 12] = [
-        Self::Blade,
-        Self::Corolla,
-        Self::Axis,
-        Self::TrunkOutline,
-        Self::Crown,
-        Self::Vein,
-        Self::Disc,
-        Self::Pot,
-        Self::Ground,
-        Self::Fruit,
-        Self::Scribble,
-        Self::Other,
-    ];
+// The choices are in the order of the trained model's label numbers.
+base::words!(StrokeClass {
+    Blade = "blade",
+    Corolla = "corolla",
+    Axis = "axis",
+    TrunkOutline = "trunk_outline",
+    Crown = "crown",
+    Vein = "vein",
+    Disc = "disc",
+    Pot = "pot",
+    Ground = "ground",
+    Fruit = "fruit",
+    Scribble = "scribble",
+    Other = "other",
+});
 
+impl StrokeClass {
     /// Returns its place in [`ALL`](Self::ALL), the trained model's label number.
     pub const fn place(self) -> usize {
         self as usize
-    }
-
-    /// Returns the word in reports, label files and class overrides.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Blade => "blade",
-            Self::Corolla => "corolla",
-            Self::Axis => "axis",
-            Self::TrunkOutline => "trunk_outline",
-            Self::Crown => "crown",
-            Self::Vein => "vein",
-            Self::Disc => "disc",
-            Self::Pot => "pot",
-            Self::Ground => "ground",
-            Self::Fruit => "fruit",
-            Self::Scribble => "scribble",
-            Self::Other => "other",
-        }
-    }
-
-    /// Returns the class of a word.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|c| c.word() == word)
     }
 }

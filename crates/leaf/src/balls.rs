@@ -50,12 +50,12 @@ impl Sides {
         Self([right, forth, right.cross(forth)])
     }
 
-    fn of_marks(marks: &FullMarks) -> Self {
+    fn from_marks(marks: &FullMarks) -> Self {
         let across = marks.rows.iter().map(|r| r.points[0] - r.points[MARKS_A_ROW - 1]).sum();
         Self::new(marks.root(), marks.tip, across)
     }
 
-    fn of_rays(rays: &Rays) -> Option<Self> {
+    fn from_rays(rays: &Rays) -> Option<Self> {
         let line = &rays.rays.get(rays.rays.len() / 2)?.points;
         let (first, last) = (&rays.rays.first()?.points, &rays.rays.last()?.points);
         let middle = |points: &[DVec3]| points.get(points.len() / 2).copied();
@@ -77,7 +77,7 @@ pub(crate) fn moved(balls: &[BallMove], marks: &FullMarks) -> Result<FullMarks, 
     if balls.is_empty() {
         return Ok(out);
     }
-    let (sides, rows) = (Sides::of_marks(marks), marks.rows.len());
+    let (sides, rows) = (Sides::from_marks(marks), marks.rows.len());
     for ball in balls {
         let (row, mark) = (ball.row as usize, ball.mark as usize);
         let way = sides.way(ball.by_m);
@@ -107,7 +107,7 @@ pub(crate) fn moved(balls: &[BallMove], marks: &FullMarks) -> Result<FullMarks, 
 /// [`RaysError::NoBall`] for a ball that the leaf does not have.
 pub(crate) fn moved_rays(balls: &[BallMove], rays: &Rays) -> Result<Rays, RaysError> {
     let mut out = rays.clone();
-    let Some(sides) = Sides::of_rays(rays) else { return Ok(out) };
+    let Some(sides) = Sides::from_rays(rays) else { return Ok(out) };
     for ball in balls {
         let (ray, mark) = (ball.row as usize, ball.mark as usize);
         let at = ray.checked_sub(1).zip(mark.checked_sub(1));
@@ -129,12 +129,12 @@ pub(crate) fn moved_rays(balls: &[BallMove], rays: &Rays) -> Result<Rays, RaysEr
 
 /// Returns the directions of [`BallMove::by_m`] on a leaf, unit vectors.
 pub fn ball_sides(marks: &FullMarks) -> [DVec3; 3] {
-    Sides::of_marks(marks).0
+    Sides::from_marks(marks).0
 }
 
 /// As [`ball_sides`], for chief veins.
 pub fn ball_sides_of_rays(rays: &Rays) -> [DVec3; 3] {
-    Sides::of_rays(rays).map_or([DVec3::X, DVec3::Y, DVec3::Z], |sides| sides.0)
+    Sides::from_rays(rays).map_or([DVec3::X, DVec3::Y, DVec3::Z], |sides| sides.0)
 }
 
 #[cfg(test)]

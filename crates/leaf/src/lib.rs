@@ -11,6 +11,7 @@
 //! | `outline` | the margin around a network of veins |
 //! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
+//! | `leaf_blade` | [`leaf_blade()`]: a leaf as the blade of another maker's plant |
 //! | `pose` | curl and wilt |
 //! | `balls` | [`BallMove`]: control balls moved by hand |
 //! | `profile` | [`LeafProfile`]: a midrib from the side and the width along it -> rays |
@@ -26,6 +27,7 @@ mod blade;
 mod form;
 mod graph;
 mod growth;
+mod leaf_blade;
 mod lobes;
 mod margin;
 mod marks;
@@ -43,6 +45,7 @@ pub use blade::Leaf;
 pub use form::LeafForm;
 pub use graph::{GraphError, VeinGraph};
 pub use growth::{LeafGrowth, StagesError};
+pub use leaf_blade::leaf_blade;
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarginPoint, MarkRow, Marks, MarksError};
 pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};

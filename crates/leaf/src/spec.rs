@@ -26,20 +26,13 @@ pub enum SurfaceKind {
     Nurbs,
 }
 
-impl SurfaceKind {
-    /// All kinds, in the order of Wang et al. (2011).
-    pub const ALL: [Self; 4] = [Self::Bezier, Self::Approximate, Self::Interpolate, Self::Nurbs];
-
-    /// Returns the word used in files, options and reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Bezier => "bezier",
-            Self::Approximate => "approximate",
-            Self::Interpolate => "interpolate",
-            Self::Nurbs => "nurbs",
-        }
-    }
-}
+// The choices are in the order of Wang et al. (2011).
+base::words!(SurfaceKind {
+    Bezier = "bezier",
+    Approximate = "approximate",
+    Interpolate = "interpolate",
+    Nurbs = "nurbs",
+});
 
 /// Parameters of an interpolating side vein.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

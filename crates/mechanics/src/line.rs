@@ -116,7 +116,7 @@ impl Line {
             points,
             radii: plant.nodes.radius_m[rows].to_vec(),
             arcs,
-            tissue: group.of_axis(axis.kind).tissue(),
+            tissue: group.group_of_axis(axis.kind).tissue(),
             kind: axis.kind,
             bearer: None,
             is_buried: axis.kind == AxisKind::Root,

@@ -59,7 +59,7 @@ impl WoodGroup {
     }
 
     /// Returns the group of one axis of a plant of this group.
-    pub(crate) const fn of_axis(self, kind: AxisKind) -> Self {
+    pub(crate) const fn group_of_axis(self, kind: AxisKind) -> Self {
         match kind {
             AxisKind::Stem | AxisKind::Petiole => Self::Green,
             _ => self,

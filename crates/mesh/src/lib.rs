@@ -8,10 +8,12 @@ mod cloud;
 mod copies;
 mod material;
 mod rig;
+mod standing;
 mod trimesh;
 
 pub use cloud::{PointClass, PointCloud};
 pub use copies::{Copies, CopyPlace};
 pub use material::{AlphaMode, Impostor, Maps, Material, MaterialId, MaterialKind, Texture};
 pub use rig::{Hold, Joint, Rig};
-pub use trimesh::{Bounds, MeshFault, Model, Part, Standing, TriMesh};
+pub use standing::{Standing, scene_copies, scene_model};
+pub use trimesh::{Bounds, MeshFault, Model, Part, TriMesh};

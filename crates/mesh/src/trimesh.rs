@@ -1,7 +1,7 @@
 //! Columns of vertices and triangles.
 
 use base::{Digest, Digestible};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use crate::{Material, MaterialId};
 
@@ -58,35 +58,6 @@ pub struct Model {
     /// Offset that was subtracted from all positions so that they fit in single precision; metres, +Y up. Files keep
     /// it as a note.
     pub offset_m: Option<DVec3>,
-}
-
-/// A model with a place in a scene: scaled, rotated, then moved. Several may refer to the same model: copies.
-#[derive(Clone, Copy, Debug)]
-pub struct Standing<'a> {
-    /// Its name in the scene.
-    pub name: &'a str,
-    /// The model.
-    pub model: &'a Model,
-    /// Position of its origin, metres.
-    pub position: DVec3,
-    /// Its rotation.
-    pub turn: DQuat,
-    /// Its scale factor.
-    pub scale: f64,
-}
-
-impl<'a> Standing<'a> {
-    /// Returns a model at the place where it was made.
-    pub fn home(name: &'a str, model: &'a Model) -> Self {
-        Self { name, model, position: DVec3::ZERO, turn: DQuat::IDENTITY, scale: 1.0 }
-    }
-
-    /// Returns whether the model is at the place where it was made.
-    pub fn is_home(&self) -> bool {
-        self.position == DVec3::ZERO
-            && self.turn == DQuat::IDENTITY
-            && self.scale.to_bits() == 1.0_f64.to_bits()
-    }
 }
 
 /// An axis-aligned box in metres; empty when `min > max`.

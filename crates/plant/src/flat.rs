@@ -26,7 +26,7 @@ pub struct FlatLeaf {
 
 impl FlatLeaf {
     /// Lays the grid of a surface flat: rows from the root up, `columns` points each from left to right.
-    pub fn of_grid(points: &[SurfacePoint], columns: usize, steps: usize) -> Self {
+    pub fn from_grid(points: &[SurfacePoint], columns: usize, steps: usize) -> Self {
         let middle = columns / 2;
         let rows = points.len() / columns;
         let at = |i: usize, j: usize| points[i * columns + j].position;

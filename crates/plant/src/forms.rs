@@ -108,7 +108,7 @@ impl BladeForm {
             Self::Needle => (needle(), stiff(0.0, 0.3)),
             Self::Tuft => (tuft(), stiff(0.05, 0.35)),
             Self::Brush => (brush(), stiff(-0.06, 0.5)),
-            Self::Spray => return Blade::shoot(Needles::of_length(0.075), 3, 1.0),
+            Self::Spray => return Blade::shoot(Needles::with_length(0.075), 3, 1.0),
         };
         Blade::mirrored(&right, relief)
     }

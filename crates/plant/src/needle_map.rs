@@ -37,7 +37,7 @@ struct Line {
 ///
 /// ```
 /// use plant::{Blade, NeedleMap, Needles};
-/// let shoot = Blade::shoot(Needles::of_length(0.1), 3, 1.0);
+/// let shoot = Blade::shoot(Needles::with_length(0.1), 3, 1.0);
 /// let map = NeedleMap::from_blade(&shoot).expect("needles");
 /// assert!(map.covered() > 0.1 && map.covered() < 0.5);
 /// ```
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn what_is_covered_is_within_a_per_cent_of_a_finer_look_and_scales_cover_more_of_their_outline() {
         let share = |length: f64, shoots: u32| {
-            let blade = Blade::shoot(Needles::of_length(length), shoots, 1.0);
+            let blade = Blade::shoot(Needles::with_length(length), shoots, 1.0);
             let map = NeedleMap::from_blade(&blade).expect("needles");
             let places = (-600..600).flat_map(|i| (0..1200).map(move |j| (f64::from(i), f64::from(j))));
             let at = |(x, y): (f64, f64)| map.seen_at(DVec2::new(x + 0.5, y + 0.5) / 1200.0);

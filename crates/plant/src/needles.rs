@@ -21,7 +21,7 @@ const SCALES: f64 = 0.045;
 impl Needles {
     /// Makes needles of a length relative to that of the shoot, 0.01 to 0.6; scales if they are short. Scales lie close
     /// and overlap, needles stand off.
-    pub fn of_length(length: f64) -> Self {
+    pub fn with_length(length: f64) -> Self {
         let length = if length.is_finite() { length.clamp(0.01, 0.6) } else { 0.1 };
         if length < SCALES {
             return Self { length, width: 0.4 * length, spacing: 0.5 * length, angle: 0.5 };

@@ -46,7 +46,7 @@ impl SplineBlade {
         let steps = steps.clamp(1, 64);
         let (us, vs) = self.grid_at(steps);
         let grid = self.surface.grid(&us, &vs);
-        let flat = FlatLeaf::of_grid(&grid, us.len(), steps);
+        let flat = FlatLeaf::from_grid(&grid, us.len(), steps);
         let rim = self.flat_rim(&flat, &us, &vs);
         let columns = us.len();
         // A single cell would depend on its place across the blade, so this takes the median of all cells.

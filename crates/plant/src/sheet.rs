@@ -138,7 +138,7 @@ impl SplineBlade {
     pub fn flat(&self, steps: usize) -> FlatLeaf {
         let steps = steps.clamp(1, 64);
         let (us, vs) = self.grid_at(steps);
-        let flat = FlatLeaf::of_grid(&self.surface.grid(&us, &vs), us.len(), steps);
+        let flat = FlatLeaf::from_grid(&self.surface.grid(&us, &vs), us.len(), steps);
         let rim = self.flat_rim(&flat, &us, &vs);
         flat.within(rim)
     }

@@ -308,7 +308,7 @@ pub(crate) fn stamens(
     veins: &mut Veins,
 ) {
     over_petals(draft, flowers, veins);
-    for k in draft.of_class(StrokeClass::Other) {
+    for k in draft.strokes_of_class(StrokeClass::Other) {
         if draft.rule[k] == Some(STAMENS) {
             draft.organ[k] = OrganWord::Stamen;
         }
@@ -363,7 +363,8 @@ pub(crate) fn stamens(
 
 /// Marks axes below the ground line, or downwards from the foot of a trunk, as roots.
 pub(crate) fn roots(draft: &mut Draft<'_>) {
-    let ground = draft.of_class(StrokeClass::Ground).into_iter().next().map(|k| &draft.ink.strokes[k].points);
+    let ground =
+        draft.strokes_of_class(StrokeClass::Ground).into_iter().next().map(|k| &draft.ink.strokes[k].points);
     let ground_y = ground.and_then(|g| bounds(g)).map(|(lo, hi)| 0.5 * (lo.y + hi.y));
     let feet: Vec<(usize, DVec2, f64)> = draft
         .bodies

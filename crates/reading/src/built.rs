@@ -68,7 +68,7 @@ impl Kind {
         };
         let crown = reading.regions.iter().max_by(largest);
         // A tree is no house plant, whatever stands at its foot.
-        let tree = crown.map(|c| of_crown(reading, c)).filter(|k| k.is_like(Self::Tree) && body.is_some());
+        let tree = crown.map(|c| judge_crown(reading, c)).filter(|k| k.is_like(Self::Tree) && body.is_some());
         if potted {
             return tree.unwrap_or(Self::HousePlant);
         }
@@ -76,12 +76,12 @@ impl Kind {
             return if flowers == 1 { Self::Flower } else { Self::Flowers };
         }
         if let Some(crown) = crown {
-            return of_crown(reading, crown);
+            return judge_crown(reading, crown);
         }
         if let Some(body) = body {
-            return of_body(reading, body);
+            return judge_body(reading, body);
         }
-        of_blades(reading, leaf_area)
+        judge_blades(reading, leaf_area)
     }
 }
 
@@ -90,7 +90,7 @@ fn drawn_thick(axis: &AxisReading) -> bool {
 }
 
 /// Returns the kind of a crown: over a trunk it is a tree, on the ground a bush.
-fn of_crown(reading: &Reading, crown: &RegionReading) -> Kind {
+fn judge_crown(reading: &Reading, crown: &RegionReading) -> Kind {
     let crowns = reading.regions.iter().filter_map(|r| bounds(&r.outline));
     let all = crowns.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let Some((low, high)) = all else { return Kind::None };
@@ -119,7 +119,7 @@ pub(crate) fn pointed(outline: &[DVec2]) -> bool {
 }
 
 /// Returns the kind of a trunk without a crown: leaves at its top are fronds.
-fn of_body(reading: &Reading, body: &AxisReading) -> Kind {
+fn judge_body(reading: &Reading, body: &AxisReading) -> Kind {
     let Some((&foot, &top)) = body.points.first().zip(body.points.last()) else { return Kind::None };
     let high = |l: &&crate::BladeReading| l.root.distance(top) < AT_TOP * foot.distance(top);
     let fronds = reading.leaves.iter().filter(high).count();
@@ -131,7 +131,7 @@ fn of_body(reading: &Reading, body: &AxisReading) -> Kind {
 }
 
 /// Leaves and stems only.
-fn of_blades(reading: &Reading, leaf_area: f64) -> Kind {
+fn judge_blades(reading: &Reading, leaf_area: f64) -> Kind {
     let axes: Vec<&AxisReading> = reading.axes.iter().filter(|a| a.kind != AxisKind::Root).collect();
     let largest = reading.leaves.iter().map(|l| signed_area(&l.outline)).fold(0.0, f64::max);
     match (reading.leaves.len(), axes.len()) {

@@ -123,7 +123,7 @@ struct Form {
 }
 
 impl Form {
-    fn of_blade(blade: &Sheetlet) -> Self {
+    fn from_blade(blade: &Sheetlet) -> Self {
         Self { area: signed_area(&blade.outline).abs(), slenderness: slenderness(&blade.outline) }
     }
 
@@ -179,7 +179,7 @@ pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual:
     if draft.blades.len() > LIMITS.most_blades {
         return freed;
     }
-    let forms: Vec<Form> = draft.blades.iter().map(Form::of_blade).collect();
+    let forms: Vec<Form> = draft.blades.iter().map(Form::from_blade).collect();
     let mut is_petal = vec![false; forms.len()];
     flowers.iter().flat_map(|f| &f.petals).for_each(|&i| is_petal[i] = true);
     flowers.retain(|f| {

@@ -198,7 +198,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Returns the strokes of a class that were drawn in parts mode.
-    pub(crate) fn of_class(&self, class: StrokeClass) -> Vec<usize> {
+    pub(crate) fn strokes_of_class(&self, class: StrokeClass) -> Vec<usize> {
         (0..self.class.len())
             .filter(|&k| self.class[k] == class && self.ink.strokes[k].mode == StrokeMode::Parts)
             .collect()
@@ -248,7 +248,7 @@ impl<'a> Draft<'a> {
     pub(crate) fn find_soil(&mut self) {
         self.doubt_pots();
         for class in [StrokeClass::Pot, StrokeClass::Ground] {
-            for k in self.of_class(class) {
+            for k in self.strokes_of_class(class) {
                 self.soil.push(self.ink.strokes[k].points.clone());
             }
         }
@@ -256,7 +256,7 @@ impl<'a> Draft<'a> {
 
     /// Returns the height of the ground: the ground line, the foot of the plant, or the sheet's lower edge.
     pub(crate) fn floor(&self) -> f64 {
-        let ground = self.of_class(StrokeClass::Ground).into_iter().next();
+        let ground = self.strokes_of_class(StrokeClass::Ground).into_iter().next();
         if let Some((lo, hi)) = ground.and_then(|k| bounds(&self.ink.strokes[k].points)) {
             return 0.5 * (lo.y + hi.y);
         }
@@ -291,7 +291,7 @@ impl<'a> Draft<'a> {
     /// Turns blade strokes into outlines; joins half outlines and turns stalks into lines.
     pub(crate) fn blades(&mut self) {
         let ink = self.ink;
-        let strokes = self.of_class(StrokeClass::Blade);
+        let strokes = self.strokes_of_class(StrokeClass::Blade);
         let gap = |k: usize| {
             let s = &ink.strokes[k];
             s.points[0].distance(s.points[s.points.len() - 1]) / s.length
@@ -369,7 +369,7 @@ impl<'a> Draft<'a> {
     /// Marks blades drawn in green as leaves if others, or a corolla, were drawn in another colour.
     pub(crate) fn green_leaves(&mut self) {
         let green = |k: usize| palette::is_green_stroke(&self.ink.strokes[k]);
-        let corollas = self.of_class(StrokeClass::Corolla);
+        let corollas = self.strokes_of_class(StrokeClass::Corolla);
         if self.blades.iter().map(|b| b.stroke).chain(corollas).all(green) {
             return;
         }
@@ -383,7 +383,7 @@ impl<'a> Draft<'a> {
         {
             return;
         }
-        for k in self.of_class(StrokeClass::Scribble) {
+        for k in self.strokes_of_class(StrokeClass::Scribble) {
             let hull = self.ink.strokes[k].hull();
             let free = self.organ[k] == OrganWord::Ignored && signed_area(hull) > SCRIBBLE_AREA;
             let shading = hull.len() > 2 && self.forest.nearest(geom::centroid(hull), 0.005).is_some();
@@ -414,7 +414,10 @@ impl<'a> Draft<'a> {
             || !self.regions.is_empty()
             || !self.forest.axes.is_empty()
             || !discs.is_empty()
-            || self.of_class(StrokeClass::Fruit).into_iter().any(|k| self.ink.strokes[k].outline().is_some());
+            || self
+                .strokes_of_class(StrokeClass::Fruit)
+                .into_iter()
+                .any(|k| self.ink.strokes[k].outline().is_some());
         if something {
             return;
         }
@@ -442,7 +445,7 @@ impl<'a> Draft<'a> {
     /// Cuts off lines that were drawn inside the pot: stems begin at its rim.
     pub(crate) fn trim_at_pots(&mut self) {
         let pots: Vec<&[DVec2]> = self
-            .of_class(StrokeClass::Pot)
+            .strokes_of_class(StrokeClass::Pot)
             .into_iter()
             .take(MOST_REGIONS)
             .filter_map(|k| self.ink.strokes[k].outline())
@@ -468,7 +471,7 @@ impl<'a> Draft<'a> {
     }
 
     pub(crate) fn fruits(&mut self, nuts: &[usize]) -> Vec<FruitReading> {
-        let mut strokes = self.of_class(StrokeClass::Fruit);
+        let mut strokes = self.strokes_of_class(StrokeClass::Fruit);
         strokes.extend(nuts);
         strokes.sort_unstable();
         let mut fruits = Vec::new();
@@ -602,7 +605,7 @@ impl<'a> Draft<'a> {
         let heights = self.ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
         let (floor, top) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
         let mut found: Vec<(DVec2, DVec2, Vec<usize>)> = Vec::new();
-        for k in self.of_class(StrokeClass::Pot) {
+        for k in self.strokes_of_class(StrokeClass::Pot) {
             let Some((low, high)) = bounds(&self.ink.strokes[k].points) else { continue };
             let mut one = (low, high, vec![k]);
             for other in found.extract_if(.., |(l, h, _)| l.x <= high.x && low.x <= h.x) {
@@ -618,7 +621,7 @@ impl<'a> Draft<'a> {
     /// Turns strokes that only the classifier takes for pots into lines if no pot can be there: much of the plant
     /// lies as low as they do, or they do not have the shape of a pot.
     fn doubt_pots(&mut self) {
-        let said = self.of_class(StrokeClass::Pot);
+        let said = self.strokes_of_class(StrokeClass::Pot);
         let is_said = |k: &usize| {
             self.settled[*k] || self.said[*k].source == Source::User || self.said[*k].shown.is_some()
         };

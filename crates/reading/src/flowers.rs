@@ -99,7 +99,7 @@ const IN_FRONT: f64 = 0.8;
 /// Returns the discs of the draft: middle and mean radius of each disc stroke.
 pub(crate) fn discs(draft: &Draft<'_>) -> Vec<(DiscReading, usize)> {
     let mut discs: Vec<(DiscReading, usize)> = Vec::new();
-    for k in draft.of_class(StrokeClass::Disc) {
+    for k in draft.strokes_of_class(StrokeClass::Disc) {
         let stroke = &draft.ink.strokes[k];
         let Some((lo, hi)) = bounds(&stroke.points) else { continue };
         let hull = stroke.hull();
@@ -119,9 +119,12 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         centres.add_line(i, &[d.centre]);
     }
     let ink = draft.ink;
-    let axes: Vec<&[DVec2]> =
-        draft.of_class(StrokeClass::Axis).into_iter().map(|k| ink.strokes[k].points.as_slice()).collect();
-    for k in draft.of_class(StrokeClass::Corolla) {
+    let axes: Vec<&[DVec2]> = draft
+        .strokes_of_class(StrokeClass::Axis)
+        .into_iter()
+        .map(|k| ink.strokes[k].points.as_slice())
+        .collect();
+    for k in draft.strokes_of_class(StrokeClass::Corolla) {
         let mut points = ink.strokes[k].points.clone();
         // A drawing of grass has no trunk.
         let lone = axes.is_empty() && discs.is_empty() && draft.kind != Some(Kind::Grass);
@@ -167,7 +170,7 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
 /// Finds a line that leads from one end of the corolla to the other, such as the round lower half of a cup under its
 /// points; returns that line, and both as one.
 fn closed_by_another(draft: &Draft<'_>, k: usize) -> Option<(usize, Vec<DVec2>)> {
-    let other = draft.of_class(StrokeClass::Other).into_iter();
+    let other = draft.strokes_of_class(StrokeClass::Other).into_iter();
     other.map(|other| (other, together(draft, k, other))).find_map(|(other, whole)| Some((other, whole?)))
 }
 

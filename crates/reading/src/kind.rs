@@ -40,53 +40,27 @@ pub enum Kind {
     None,
 }
 
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Self; 14] = [
-        Self::Flower,
-        Self::Flowers,
-        Self::Stem,
-        Self::Tree,
-        Self::Conifer,
-        Self::Palm,
-        Self::Bush,
-        Self::Cactus,
-        Self::Grass,
-        Self::Leaf,
-        Self::Fruit,
-        Self::HousePlant,
-        Self::Vegetable,
-        Self::None,
-    ];
+base::words!(Kind {
+    Flower = "flower",
+    Flowers = "flowers",
+    Stem = "stem",
+    Tree = "tree",
+    Conifer = "conifer",
+    Palm = "palm",
+    Bush = "bush",
+    Cactus = "cactus",
+    Grass = "grass",
+    Leaf = "leaf",
+    Fruit = "fruit",
+    HousePlant = "house_plant",
+    Vegetable = "vegetable",
+    None = "none",
+});
 
+impl Kind {
     /// Its place in [`ALL`](Self::ALL).
     pub const fn place(self) -> usize {
         self as usize
-    }
-
-    /// Returns the word in reports and options.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Flower => "flower",
-            Self::Flowers => "flowers",
-            Self::Stem => "stem",
-            Self::Tree => "tree",
-            Self::Conifer => "conifer",
-            Self::Palm => "palm",
-            Self::Bush => "bush",
-            Self::Cactus => "cactus",
-            Self::Grass => "grass",
-            Self::Leaf => "leaf",
-            Self::Fruit => "fruit",
-            Self::HousePlant => "house_plant",
-            Self::Vegetable => "vegetable",
-            Self::None => "none",
-        }
-    }
-
-    /// Returns the kind of a word.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|k| k.word() == word)
     }
 
     /// Whether both kinds are built alike: a conifer is a tree, and a root or pod a body as a fruit is.

@@ -75,7 +75,7 @@ pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
         return;
     }
     let ink = draft.ink;
-    for k in draft.of_class(StrokeClass::Crown).into_iter().take(MOST_REGIONS) {
+    for k in draft.strokes_of_class(StrokeClass::Crown).into_iter().take(MOST_REGIONS) {
         let (crown, ends) = split_stalks(&ink.strokes[k].points, SIDE_NEAR);
         let foot = bounds(&crown).map_or(0.0, |b| b.0.y);
         let side = |l: &Vec<DVec2>| {
@@ -120,7 +120,7 @@ fn other_side(draft: &mut Draft<'_>) {
             && apart < own.max(long)
             && own_top.y - own_foot.y > SIDE_STRAIGHT * polyline_length(p)
     };
-    let mut lines = draft.of_class(StrokeClass::Axis).into_iter().filter(beside);
+    let mut lines = draft.strokes_of_class(StrokeClass::Axis).into_iter().filter(beside);
     if let (Some(k), None) = (lines.next(), lines.next()) {
         draft.class[k] = StrokeClass::TrunkOutline;
     }
@@ -130,7 +130,7 @@ fn other_side(draft: &mut Draft<'_>) {
 pub(crate) fn bodies(draft: &mut Draft<'_>) {
     let sides = std::mem::take(&mut draft.sides);
     let ink = draft.ink;
-    let mut strokes = draft.of_class(StrokeClass::TrunkOutline);
+    let mut strokes = draft.strokes_of_class(StrokeClass::TrunkOutline);
     let mut points: Vec<&[DVec2]> = strokes.iter().map(|&k| ink.strokes[k].points.as_slice()).collect();
     strokes.extend(sides.iter().map(|s| s.0));
     points.extend(sides.iter().map(|s| s.1.as_slice()));
@@ -242,7 +242,7 @@ fn arm_base(forest: &Forest, ring: &Ring, later: bool) -> Option<(Attachment, DV
 
 /// Reads crown contours into regions; a trunk that was drawn in the same stroke is cut off and read as a body.
 pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
-    let mut strokes = draft.of_class(StrokeClass::Crown);
+    let mut strokes = draft.strokes_of_class(StrokeClass::Crown);
     let loops = std::mem::take(&mut draft.loops);
     let united = std::mem::take(&mut draft.united);
     let around = united.iter().filter_map(|&k| crown_outline(&draft.ink.strokes[k].points));
@@ -507,10 +507,13 @@ fn stems_below(draft: &mut Draft<'_>, region: &RegionDraft, floor: f64) -> Vec<u
 
 /// Turns shading below a crown without a trunk into its trunk.
 pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
-    if !draft.bodies.is_empty() || draft.regions.is_empty() || !draft.of_class(StrokeClass::Axis).is_empty() {
+    if !draft.bodies.is_empty()
+        || draft.regions.is_empty()
+        || !draft.strokes_of_class(StrokeClass::Axis).is_empty()
+    {
         return;
     }
-    let found = draft.of_class(StrokeClass::Scribble).into_iter().find_map(|k| {
+    let found = draft.strokes_of_class(StrokeClass::Scribble).into_iter().find_map(|k| {
         let hull = draft.ink.strokes[k].hull();
         let (lo, hi) = bounds(hull)?;
         let middle = centroid(hull);

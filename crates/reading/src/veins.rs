@@ -48,7 +48,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
     let boxes = Boxes::new(draft.blades.iter().map(|b| b.outline.as_slice()));
     let rib = |b: &mut Sheetlet| b.rib.take().map(|points| VeinLine { points, stroke: b.stroke });
     let mut veins: Veins = draft.blades.iter_mut().map(|b| rib(b).into_iter().collect()).collect();
-    for (class, strokes) in [Vein, Axis].map(|class| (class, draft.of_class(class))) {
+    for (class, strokes) in [Vein, Axis].map(|class| (class, draft.strokes_of_class(class))) {
         for k in strokes {
             let ink = draft.ink;
             let points = &ink.strokes[k].points;

@@ -36,7 +36,7 @@ pub fn albedo(model: &Model, spec: &PictureSpec, run: &Run<'_>) -> Result<Pictur
     let bins = Bins::new(&scene, &camera, spec.width, spec.height);
     let pattern = pattern(spec.supersample);
     let count = bins.columns * bins.rows;
-    let tiles = map_until_cancelled(run, count, |k| of_tile(&scene, &camera, (&bins, k), &pattern))?;
+    let tiles = map_until_cancelled(run, count, |k| tile_colours(&scene, &camera, (&bins, k), &pattern))?;
     let mut picture = Picture::filled(spec.width, spec.height, [0; 4]);
     for (k, tile) in tiles.iter().enumerate() {
         #[expect(clippy::cast_possible_truncation, reason = "inside the picture, at most 8192")]
@@ -47,9 +47,9 @@ pub fn albedo(model: &Model, spec: &PictureSpec, run: &Run<'_>) -> Result<Pictur
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
-fn of_tile(scene: &Scene, camera: &Camera, (bins, tile): (&Bins, usize), pattern: &[DVec2]) -> Picture {
+fn tile_colours(scene: &Scene, camera: &Camera, (bins, tile): (&Bins, usize), pattern: &[DVec2]) -> Picture {
     let mut out = Picture::filled(TILE as u32, TILE as u32, [0; 4]);
-    if bins.of_tile(tile).is_empty() {
+    if bins.faces_in(tile).is_empty() {
         return out;
     }
     let visible = Visible::draw(scene, bins, tile, pattern, camera.is_perspective());

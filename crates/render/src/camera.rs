@@ -45,7 +45,7 @@ impl Camera {
             View::ThreeQuarter => (THREE_QUARTER.0, THREE_QUARTER.1, true),
             View::Turntable { .. } => (0.0, THREE_QUARTER.1, true),
             View::Orbit { azimuth, elevation } => (azimuth, elevation, true),
-            View::Pinhole(pinhole) => return Self::of_pinhole(&pinhole),
+            View::Pinhole(pinhole) => return Self::from_pinhole(&pinhole),
         };
         let (sa, ca) = exact_sin_cos(azimuth);
         let (se, ce) = exact_sin_cos(elevation);
@@ -76,7 +76,7 @@ impl Camera {
         camera
     }
 
-    fn of_pinhole(pinhole: &Pinhole) -> Self {
+    fn from_pinhole(pinhole: &Pinhole) -> Self {
         let back = pinhole.down.cross(pinhole.right);
         Self {
             right: pinhole.right,
@@ -92,7 +92,7 @@ impl Camera {
 
     /// Makes an orthographic camera that looks from the direction `back` at all within `radius` of `centre`, in a
     /// square of `pixels` pixels a side.
-    pub(crate) fn of_sphere(back: DVec3, centre: DVec3, radius: f64, pixels: u32) -> Self {
+    pub(crate) fn around_sphere(back: DVec3, centre: DVec3, radius: f64, pixels: u32) -> Self {
         let back = back.normalize_or(DVec3::Z);
         let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
         let half = 0.5 * f64::from(pixels);

@@ -61,7 +61,7 @@ pub fn hits(model: &Model, views: &[PictureSpec], run: &Run<'_>) -> Result<Vec<V
             let view = view.clamped();
             let camera = Camera::framing(&points, &view);
             let bins = Bins::new(&scene, &camera, view.width, view.height);
-            let of_tile = |tile| of_tile(&scene, &bins, &camera, &view, tile);
+            let of_tile = |tile| tile_hits(&scene, &bins, &camera, &view, tile);
             let tiles = map_until_cancelled(run, bins.columns * bins.rows, of_tile)?;
             let mut seen: Vec<Hit> = tiles.into_iter().flatten().collect();
             seen.sort_unstable_by_key(|h| h.pixel);
@@ -71,8 +71,8 @@ pub fn hits(model: &Model, views: &[PictureSpec], run: &Run<'_>) -> Result<Vec<V
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "pixels of a picture of at most 8192 x 8192")]
-fn of_tile(scene: &Scene, bins: &Bins, camera: &Camera, view: &PictureSpec, tile: usize) -> Vec<Hit> {
-    if bins.of_tile(tile).is_empty() {
+fn tile_hits(scene: &Scene, bins: &Bins, camera: &Camera, view: &PictureSpec, tile: usize) -> Vec<Hit> {
+    if bins.faces_in(tile).is_empty() {
         return Vec::new();
     }
     let middle = [DVec2::splat(0.5)];

@@ -51,7 +51,7 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
     if !(radius.is_finite() && radius > 0.0) {
         return Ok(None);
     }
-    let camera = |k: u32| Camera::of_sphere(direction(k % FRAMES, k / FRAMES), centre, radius, pixels);
+    let camera = |k: u32| Camera::around_sphere(direction(k % FRAMES, k / FRAMES), centre, radius, pixels);
     let views: Vec<View> = map_until_cancelled(run, (FRAMES * FRAMES) as usize, |k| {
         let k = u32::try_from(k).unwrap_or(0);
         view((&scene, &sky), &camera(k), (radius, pixels))
@@ -153,7 +153,7 @@ fn view((scene, sky): (&Scene, &Sky), camera: &Camera, (radius, pixels): (f64, u
     let pattern = pattern(SAMPLES);
     let size = pixels as usize;
     let mut sums = vec![Sum::default(); size * size];
-    for tile in (0..bins.columns * bins.rows).filter(|t| !bins.of_tile(*t).is_empty()) {
+    for tile in (0..bins.columns * bins.rows).filter(|t| !bins.faces_in(*t).is_empty()) {
         let seen = Visible::draw(scene, &bins, tile, &pattern, false);
         let (x0, y0) = (tile % bins.columns * TILE, tile / bins.columns * TILE);
         for (y, x) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (y, x))) {

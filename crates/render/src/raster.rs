@@ -91,7 +91,7 @@ impl Bins {
         Self { flats, columns, rows, tiles }
     }
 
-    pub(crate) fn of_tile(&self, tile: usize) -> &[u32] {
+    pub(crate) fn faces_in(&self, tile: usize) -> &[u32] {
         &self.tiles[tile]
     }
 }
@@ -134,7 +134,7 @@ impl Visible {
         let count = TILE * TILE * samples;
         let mut seen = Self { ids: vec![NONE; count], keys: vec![f32::NEG_INFINITY; count], samples };
         let origin = DVec2::new((tile % bins.columns * TILE) as f64, (tile / bins.columns * TILE) as f64);
-        for &id in bins.of_tile(tile) {
+        for &id in bins.faces_in(tile) {
             if let Some(flat) = &bins.flats[id as usize] {
                 seen.add(scene, flat, id, origin, &pattern[..samples], perspective);
             }

@@ -193,9 +193,9 @@ fn surfaces(model: &Model) -> Vec<Surface> {
                 } else {
                     DVec3::splat(1.2)
                 },
-                normals: prepared(m.maps.normal.as_ref(), Pyramid::of_numbers),
-                orm: prepared(m.maps.orm.as_ref(), Pyramid::of_numbers),
-                thin: prepared(m.maps.through.as_ref(), Pyramid::of_numbers),
+                normals: prepared(m.maps.normal.as_ref(), Pyramid::from_numbers),
+                orm: prepared(m.maps.orm.as_ref(), Pyramid::from_numbers),
+                thin: prepared(m.maps.through.as_ref(), Pyramid::from_numbers),
                 mask: m.alpha == AlphaMode::Mask && texture.is_some(),
                 texture,
             }

@@ -61,7 +61,7 @@ impl Frame<'_> {
         let (x0, y0) = self.corner(tile);
         let mut out = Picture::filled(TILE as u32, TILE as u32, [0; 4]);
         let perspective = self.camera.is_perspective();
-        let empty = self.bins.of_tile(tile).is_empty();
+        let empty = self.bins.faces_in(tile).is_empty();
         let visible =
             (!empty).then(|| Visible::draw(self.scene, &self.bins, tile, &self.pattern, perspective));
         let pixels = out.pixels.chunks_exact_mut(4).enumerate();

@@ -36,7 +36,7 @@ impl Pyramid {
     }
 
     /// Makes the pyramid of plain numbers: normals, roughness.
-    pub(crate) fn of_numbers(texture: &mesh::Texture) -> Option<Self> {
+    pub(crate) fn from_numbers(texture: &mesh::Texture) -> Option<Self> {
         Self::from_texture(texture, |byte| f64::from(byte) / 255.0)
     }
 

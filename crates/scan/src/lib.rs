@@ -17,7 +17,9 @@
 //! | `plot` | [`find_plot`]: many trees, with the points assigned to them |
 //! | `surface` | [`wood_gap`]: distance between the wood of two plants |
 //! | `scanner` | [`scan`]: the points that a scanner would measure on a mesh, for trials |
+//! | `survey`, `survey_spec`, `beams` | [`survey()`]: plants and stands as a scanner sees them, each point with its part |
 
+mod beams;
 mod circle;
 mod error;
 mod foliage;
@@ -29,6 +31,8 @@ mod radii;
 mod scanner;
 mod stems;
 mod surface;
+mod survey;
+mod survey_spec;
 mod tree;
 mod trunks;
 mod wanted;
@@ -41,5 +45,7 @@ pub use plot::{Plot, PlotTree, find_plot};
 pub use radii::PipeSource;
 pub use scanner::{ScannerSpec, scan, wood_mesh};
 pub use surface::{Gap, wood_gap};
+pub use survey::{Stood, Surveyed, survey, survey_stand};
+pub use survey_spec::{SurveyError, SurveySpec};
 pub use tree::{FoundTree, find_tree};
 pub use wanted::{ScanPoints, ScanTally, TreeScanSpec};

@@ -157,7 +157,7 @@ impl Plot {
         report: &mut Report,
     ) -> Result<FoundTree, ScanTreeError> {
         let Some(own) = self.trees.get(tree) else { return Err(ScanTreeError::NoStem) };
-        let scene = Scene::of_tree(self.points_of(tree), self.classes_of(tree), self.ground.clone())?;
+        let scene = Scene::from_tree(self.points_of(tree), self.classes_of(tree), self.ground.clone())?;
         let spec = TreeScanSpec { at: Some(own.place), ..spec.clone() };
         scene.tree(&spec, run, report)
     }

@@ -122,7 +122,7 @@ impl Scene {
     }
 
     /// One tree's own points, over a ground that is known.
-    pub(crate) fn of_tree(
+    pub(crate) fn from_tree(
         above: Vec<DVec3>,
         classes: Vec<PointClass>,
         ground: Option<Ground>,

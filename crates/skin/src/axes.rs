@@ -460,7 +460,7 @@ fn end(plant: &Plant, chain: &Chain, spine: &Spine, line: &Line) -> End {
         return End::Round;
     };
     let beyond = spine.length() - line.reach.as_ref().map_or(0.0, |r| r.exit.s);
-    End::of_stub(plant.axis(axis).key, beyond, spine.stout(), last)
+    End::from_stub(plant.axis(axis).key, beyond, spine.stout(), last)
 }
 
 /// Makes one tube: fillet or flat base, rings, and its end. Also returns the number of the fillet's rows below the

@@ -41,7 +41,7 @@ pub fn copies(plant: &Plant, model: &Model, layout: &Layout) -> (Model, Vec<Copi
             rest.parts.push(part.clone());
             continue;
         }
-        let (taken, found) = of_part(plant, part, &pieces);
+        let (taken, found) = part_copies(plant, part, &pieces);
         all.extend(found);
         let left = |&(k, _): &(usize, &Range<usize>)| !taken[k];
         let ranges: Vec<&Range<usize>> =
@@ -58,7 +58,7 @@ pub fn copies(plant: &Plant, model: &Model, layout: &Layout) -> (Model, Vec<Copi
 }
 
 /// Finds the pieces of a part that are copies.
-fn of_part(
+fn part_copies(
     plant: &Plant,
     part: &Part,
     pieces: &[(Option<OrganId>, Range<usize>)],

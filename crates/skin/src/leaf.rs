@@ -48,7 +48,7 @@ pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh
     let (us, vs) = blade.grid_at(steps);
     let columns = us.len();
     let points = blade.surface.grid(&us, &vs);
-    let flat = (blade.chart == Chart::Unrolled).then(|| plant::FlatLeaf::of_grid(&points, columns, steps));
+    let flat = (blade.chart == Chart::Unrolled).then(|| plant::FlatLeaf::from_grid(&points, columns, steps));
     let mesh = &mut out.surface;
     for (k, p) in points.iter().enumerate() {
         let (u, v) = (us[k % columns], vs[k / columns]);

@@ -17,6 +17,9 @@
 //! placed copies |
 //! | `layout`, `copies` | [`Layout`]: position of axes and organs in the parts; [`copies()`]: leaves that share one
 //! form |
+//! | `coarser` | [`coarser()`]: copies of a plant with fewer leaves and axes, for a distant view |
+//! | `labels` | [`Labels`]: the parts that triangles lie on, by the rows of [`PARTS`] |
+//! | `site` | [`make_site`]: soil, stones and pots |
 //! | `needles` | shoots in needles, painted on cards |
 //! | `shoots` | [`FoliageStyle`], [`Shoots`]: leaves as cards, several on one |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
@@ -31,11 +34,13 @@ mod axes;
 
 mod blade;
 mod body;
+mod coarser;
 mod colliders;
 mod coloured;
 mod copies;
 mod fork;
 mod hollow;
+mod labels;
 mod layout;
 mod leaf;
 mod lean;
@@ -49,6 +54,7 @@ mod pictures;
 mod rings;
 mod shoots;
 mod simpler;
+mod site;
 mod sleeve;
 mod solid;
 mod spec;
@@ -63,8 +69,13 @@ mod wind;
 
 pub use self::spec::{BarkSpec, LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
+pub use coarser::{coarser, coarser_with, keep_out};
 pub use colliders::{colliders, joined_colliders};
 pub use copies::copies;
+pub use labels::{
+    Label, Labels, NOTHING, PART_OF_SOIL, PART_OF_STONE, PARTS, part_is_of_axis, part_of_axis, part_of_organ,
+    triangle_labels,
+};
 pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
@@ -72,6 +83,7 @@ pub use natural::{BarkKind, VeinPattern};
 pub use organs::KeptShapes;
 pub use pictures::SurfacePictures;
 pub use shoots::{FoliageStyle, Shoots};
+pub use site::{PotSpec, SceneSite, SceneSiteSpec, make_site};
 pub use solid::{Solid, SolidError, SolidSpec, solid};
 pub use sway::{gust, sway};
 pub use texture::{CloudColours, LeafColours, swatch, vein_texture};

@@ -33,33 +33,18 @@ pub enum Pattern {
     Picture,
 }
 
+base::words!(Pattern {
+    Plain = "plain",
+    Shaded = "shaded",
+    Veined = "veined",
+    Streaked = "streaked",
+    Speckled = "speckled",
+    Picotee = "picotee",
+    Variegated = "variegated",
+    Picture = "picture",
+});
+
 impl Pattern {
-    /// Every pattern.
-    pub const ALL: [Self; 8] = [
-        Self::Plain,
-        Self::Shaded,
-        Self::Veined,
-        Self::Streaked,
-        Self::Speckled,
-        Self::Picotee,
-        Self::Variegated,
-        Self::Picture,
-    ];
-
-    /// Returns the word in files and in names of materials.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Plain => "plain",
-            Self::Shaded => "shaded",
-            Self::Veined => "veined",
-            Self::Streaked => "streaked",
-            Self::Speckled => "speckled",
-            Self::Picotee => "picotee",
-            Self::Variegated => "variegated",
-            Self::Picture => "picture",
-        }
-    }
-
     /// Whether it is painted by the distance from the margin, not by the position across.
     pub(crate) const fn follows_margin(self) -> bool {
         matches!(self, Self::Picotee | Self::Variegated)

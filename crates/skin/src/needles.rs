@@ -36,7 +36,7 @@ mod tests {
     /// `sketch` counts the shoots of a drawn conifer by the area that each covers.
     #[test]
     fn a_spruces_shoot_covers_a_fifth_of_the_square_of_its_length() {
-        let cut = Cut::new(&Blade::shoot(Needles::of_length(0.075), 3, 1.0));
+        let cut = Cut::new(&Blade::shoot(Needles::with_length(0.075), 3, 1.0));
         let places = (-100..100).flat_map(|i| (0..200).map(move |j| (f64::from(i), f64::from(j))));
         let covered = places.filter(|&(x, y)| cut.has(DVec2::new(x + 0.5, y + 0.5) / 200.0)).count();
         let share = covered as f64 / 40_000.0;

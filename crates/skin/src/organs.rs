@@ -138,7 +138,7 @@ pub(crate) fn organs(
 }
 
 /// Returns a value for each shape as it is drawn at scale 1; the default for an unused one.
-fn of_each<T: Default>(
+fn map_shapes<T: Default>(
     plant: &Plant,
     spec: &SkinSpec,
     budget: &Budget,
@@ -157,7 +157,7 @@ fn of_each<T: Default>(
 
 /// Returns the mesh of each shape as it is drawn at scale 1, including its veins; empty for an unused one.
 pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<TriMesh> {
-    of_each(plant, spec, budget, |made, _| {
+    map_shapes(plant, spec, budget, |made, _| {
         let mut all = TriMesh::default();
         for mesh in [made.surface, made.veins] {
             all.append(&TriMesh { uvs: Vec::new(), colors: Vec::new(), ..mesh.clone() });
@@ -170,20 +170,20 @@ pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Tri
 
 /// Returns the vertices of each shape as it is drawn at scale 1; empty for an unused one.
 pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Vec<DVec3>> {
-    of_each(plant, spec, budget, |made, _| {
+    map_shapes(plant, spec, budget, |made, _| {
         made.surface.positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect()
     })
 }
 
 /// Returns the triangles of the surface of each shape; 0 for an unused one.
 pub(crate) fn triangles(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<usize> {
-    of_each(plant, spec, budget, |made, _| made.surface.triangles.len())
+    map_shapes(plant, spec, budget, |made, _| made.surface.triangles.len())
 }
 
 /// Returns the area of each shape as it is drawn at scale 1, one side, without its holes, square metres; 0 for an
 /// unused one.
 pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64> {
-    of_each(plant, spec, budget, |made, share| {
+    map_shapes(plant, spec, budget, |made, share| {
         let area = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| made.surface.position(i));
             0.5 * (b - a).cross(c - a).length()

@@ -30,7 +30,7 @@ struct Quadric {
 }
 
 impl Quadric {
-    fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+    fn from_triangle([a, b, c]: [DVec3; 3]) -> Self {
         let normal = (b - a).cross(c - a);
         let Some(n) = normal.try_normalize() else { return Self::default() };
         let ([x, y, z], d, weight) = (n.to_array(), -n.dot(a), 0.5 * normal.length());
@@ -115,7 +115,7 @@ impl Surface {
     fn measure(&mut self) {
         for row in 0..self.triangles.len() {
             let t = self.triangles[row];
-            let own = Quadric::of_triangle(t.map(|c| self.point(c)));
+            let own = Quadric::from_triangle(t.map(|c| self.point(c)));
             for corner in t {
                 let sum = &mut self.quadrics[corner as usize];
                 *sum = sum.plus(&own);

@@ -231,33 +231,16 @@ pub enum PetalColor {
     Magenta,
 }
 
-impl PetalColor {
-    /// Every colour.
-    pub const ALL: [Self; 8] = [
-        Self::Pink,
-        Self::White,
-        Self::Yellow,
-        Self::Violet,
-        Self::Red,
-        Self::Orange,
-        Self::Blue,
-        Self::Magenta,
-    ];
-
-    /// Returns the word used in material names.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Pink => "pink",
-            Self::White => "white",
-            Self::Yellow => "yellow",
-            Self::Violet => "violet",
-            Self::Red => "red",
-            Self::Orange => "orange",
-            Self::Blue => "blue",
-            Self::Magenta => "magenta",
-        }
-    }
-}
+base::words!(PetalColor {
+    Pink = "pink",
+    White = "white",
+    Yellow = "yellow",
+    Violet = "violet",
+    Red = "red",
+    Orange = "orange",
+    Blue = "blue",
+    Magenta = "magenta",
+});
 
 impl PetalColor {
     /// Returns the mean of a petal of this colour, linear RGB.

@@ -38,7 +38,7 @@ impl End {
     /// Returns the end of a stub with a key that stands out by `beyond` and narrows from `stout` to `radius`, metres:
     /// one with a thick end broke off there, and one that is shorter than thick is the rim that grew around a rotted
     /// branch.
-    pub(crate) fn of_stub(key: u64, beyond: f64, stout: f64, radius: f64) -> Self {
+    pub(crate) fn from_stub(key: u64, beyond: f64, stout: f64, radius: f64) -> Self {
         if radius < THICK * stout {
             Self::Round
         } else if beyond > radius {
@@ -147,9 +147,9 @@ mod tests {
 
     #[test]
     fn what_stands_out_says_how_it_ends() {
-        assert_eq!(End::of_stub(1, 0.1, 0.05, 0.005), End::Round);
-        assert_eq!(End::of_stub(1, 0.1, 0.05, 0.04), End::Broken(Seed::new(1)));
-        assert!(matches!(End::of_stub(1, 0.02, 0.05, 0.04), End::Rim(d) if d > 0.0 && d < 0.02));
+        assert_eq!(End::from_stub(1, 0.1, 0.05, 0.005), End::Round);
+        assert_eq!(End::from_stub(1, 0.1, 0.05, 0.04), End::Broken(Seed::new(1)));
+        assert!(matches!(End::from_stub(1, 0.02, 0.05, 0.04), End::Rim(d) if d > 0.0 && d < 0.02));
     }
 
     #[test]

@@ -74,7 +74,7 @@ impl Node {
             at: e.span().map_or(0, |s| s.start),
         })?;
         let at = parsed.span().start;
-        Ok(Self { kind: Kind::of_table(parsed.get_ref())?, at })
+        Ok(Self { kind: Kind::from_table(parsed.get_ref())?, at })
     }
 
     /// Builds the tree of a JSON value.
@@ -101,7 +101,7 @@ impl Node {
         Self { kind, at: 0 }
     }
 
-    fn of_toml(value: &toml::Spanned<DeValue<'_>>) -> Result<Self, TextFault> {
+    fn from_value(value: &toml::Spanned<DeValue<'_>>) -> Result<Self, TextFault> {
         let at = value.span().start;
         let fault = |message: &str| TextFault { path: String::new(), message: message.to_owned(), at };
         let kind = match value.get_ref() {
@@ -119,8 +119,8 @@ impl Node {
             }
             DeValue::Boolean(truth) => Kind::Truth(*truth),
             DeValue::Datetime(_) => return Err(fault("a date has no place here")),
-            DeValue::Array(all) => Kind::List(all.iter().map(Self::of_toml).collect::<Result<_, _>>()?),
-            DeValue::Table(table) => Kind::of_table(table)?,
+            DeValue::Array(all) => Kind::List(all.iter().map(Self::from_value).collect::<Result<_, _>>()?),
+            DeValue::Table(table) => Kind::from_table(table)?,
         };
         Ok(Self { kind, at })
     }
@@ -303,10 +303,10 @@ impl Kind {
         }
     }
 
-    fn of_table(table: &DeTable<'_>) -> Result<Self, TextFault> {
+    fn from_table(table: &DeTable<'_>) -> Result<Self, TextFault> {
         let entry = |(key, value): (&toml::Spanned<toml::de::DeString<'_>>, _)| {
             let (at, key) = (key.span().start, key.get_ref().to_string());
-            Node::of_toml(value).map(|node| Entry { key, at, node })
+            Node::from_value(value).map(|node| Entry { key, at, node })
         };
         table.iter().map(entry).collect::<Result<_, _>>().map(Self::Table)
     }

@@ -347,7 +347,7 @@ fn preview(
     (drawing, said): (&Drawing, Option<(u32, StrokeClass)>),
     run: &Run<'_>,
 ) -> Result<ItemReport, MakeError> {
-    let mut options = SketchOptions::of_plant(plant);
+    let mut options = SketchOptions::from_plant(plant);
     if let Some((row, class)) = said {
         options.classes.insert(row, class);
     }

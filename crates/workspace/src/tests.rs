@@ -109,7 +109,7 @@ fn the_project_is_the_same_plant_elsewhere() {
     assert_eq!(json(&other.state())["plants"][0]["seed"], "18446744073709551615");
     assert_eq!(other.undo(), None, "opened fresh");
     let plant = &s.document().plants()[0];
-    let options = SketchOptions::of_plant(plant);
+    let options = SketchOptions::from_plant(plant);
     let made = burgeon::make_from_sketch(&plant.drawing(), &options, plant.settings().seed, &Run::plain());
     assert_eq!(here["item"]["digest"], made.unwrap().item.digest.as_str());
 }

@@ -498,7 +498,7 @@ impl Workspace {
 
 fn flower(species: &str) -> Result<document::FlowerMaker, WorkspaceError> {
     let unknown = || document::SettingFault::Flower { name: species.into() };
-    let flower = document::FlowerMaker::of_preset(species);
+    let flower = document::FlowerMaker::from_preset(species);
     flower.ok_or_else(|| document::CommandError::OutOfRange(unknown()).into())
 }
 

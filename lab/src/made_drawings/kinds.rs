@@ -112,7 +112,7 @@ const OTHERS: [(&str, Making); 21] = [
 ];
 
 /// Makes drawings of each maker, with their words and kinds; [`Kind::None`] is not a plant.
-pub(crate) fn of_kinds(salt: u64, each: u64) -> Vec<(&'static str, Kind, Lines)> {
+pub(crate) fn make_of_kinds(salt: u64, each: u64) -> Vec<(&'static str, Kind, Lines)> {
     let others = OTHERS.iter().map(|&(word, make)| (word, Kind::None, make));
     let makers = MAKERS.iter().copied().chain(others);
     let mut found = Vec::new();

@@ -67,7 +67,7 @@ pub(super) fn drawn_flower(
     }
     let law = law.unwrap_or_else(|| plant.law());
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let mut head = report::of_one("bloom run", args.seed, &args.start, &plant.name, &args.output);
+    let mut head = report::report_one("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.engine = args.export.report();
     head.items[0].warnings.clone_from(&plant.item.warnings);
     head.items[0].warnings.extend(no_pace(args, &law));
@@ -92,7 +92,7 @@ pub(super) fn drawn_flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [read_ms, made_ms, write_ms];
-    let told = BloomReport::of_flower(head, times);
+    let told = BloomReport::from_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 
@@ -137,7 +137,7 @@ pub(super) fn flower(
         Stopped::Cancelled(_) => Failure::Cancelled,
         Stopped::OverBudget(much) => Failure::bad_file(Path::new(&args.start), much),
     };
-    let mut head = report::of_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    let mut head = report::report_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
     head.engine = args.export.report();
     head.items[0].warnings.extend(no_pace(args, &law));
     if let Some(edits) = &args.edits {
@@ -163,6 +163,6 @@ pub(super) fn flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [0.0, 0.0, write_ms];
-    let told = BloomReport::of_flower(head, times);
+    let told = BloomReport::from_flower(head, times);
     tell(args, machine, told, written, outputs)
 }

@@ -128,7 +128,7 @@ pub(super) fn run(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     drop(show);
-    let mut head = report::of_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
+    let mut head = report::report_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.input.offset_m = loaded.origin.offset_in(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
     head.items[0].warnings.extend(no_pace(args, &made.law));

@@ -130,7 +130,7 @@ pub(super) struct BloomReport {
 }
 
 impl BloomReport {
-    pub(super) fn of_flower(head: RunReport, times: [f64; 3]) -> Self {
+    pub(super) fn from_flower(head: RunReport, times: [f64; 3]) -> Self {
         let (residuals, poses, stages) = (vec![], vec![], vec![]);
         Self { head, residuals, error: None, aligned: None, poses, stages, lattice: None, plant: None, times }
     }

@@ -35,7 +35,7 @@ impl Written {
     fn take(&mut self, shown: &Shown) {
         self.frames += 1;
         self.counts = match &shown.plant {
-            Some(plant) => Counts::of_plant(plant),
+            Some(plant) => Counts::from_plant(plant),
             None => Counts::default(),
         };
         self.counts.vertices = shown.model.vertex_count() as u64;

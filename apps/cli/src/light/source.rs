@@ -72,7 +72,7 @@ fn measured(path: &Path) -> Outcome<LightSources> {
         };
         found.map_err(|e| Failure::bad_file(path, format_args!("line {row}: {e}")))?;
     }
-    LightSources::of_measured(beams).map_err(|e| match e {
+    LightSources::from_measured(beams).map_err(|e| match e {
         LightSourceError::Light(LightError::Dark) => {
             Failure::bad_file(path, "holds no light: give rows of azimuth, elevation and W/m2 above 0")
         }

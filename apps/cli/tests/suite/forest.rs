@@ -32,9 +32,10 @@ const LIGHT: &[&str] = &[
 ];
 const TREES: usize = 16;
 
-fn inventory(at: &Path) {
+/// Writes an inventory of so many trees of two species, `trees.csv`.
+pub(crate) fn inventory(at: &Path, trees: usize) {
     let mut text = "x,y,species,height_m,dbh_cm,crown_width_m\n".to_owned();
-    for k in 0..TREES {
+    for k in 0..trees {
         let (x, y) = (7.0 * (k % 8) as f64 + 0.3, 6.5 * (k / 8) as f64);
         let species = if k % 5 == 0 { "reed" } else { "hazel" };
         let height = if k % 5 == 0 { 2.0 } else { 3.5 + 0.1 * (k % 11) as f64 };
@@ -117,7 +118,7 @@ fn walk(node: &Value, above: Option<(&[f64], f64)>, seen: &mut Vec<String>) {
 #[test]
 fn a_forest_is_whole_alone_carried_on_and_repaired() {
     let at = folder("forest-whole");
-    inventory(&at);
+    inventory(&at, TREES);
     let report = forest(&at, &["-o", "all", "--map", "plan.png", "--glb", "--usd", "--threads", "2"]);
     let tally = &report["forest"];
     assert_eq!((tally["trees"].as_u64(), tally["species"].as_u64()), (Some(TREES as u64), Some(2)));
@@ -184,7 +185,7 @@ fn a_forest_is_whole_alone_carried_on_and_repaired() {
 #[test]
 fn a_forest_that_was_killed_is_carried_on() {
     let at = folder("forest-killed");
-    inventory(&at);
+    inventory(&at, TREES);
     forest(&at, &["-o", "all"]);
     let whole = files(&at.join("all"));
     let all = [&["forest", "trees.csv", "-q", "-o", "again"], LIGHT].concat();
@@ -219,7 +220,7 @@ fn a_forest_that_was_killed_is_carried_on() {
 #[test]
 fn bad_input_of_a_forest_is_one_line() {
     let at = folder("forest-bad");
-    inventory(&at);
+    inventory(&at, TREES);
     fs::create_dir(at.join("full")).unwrap();
     fs::write(at.join("full/notes.txt"), "mine").unwrap();
     fs::write(at.join("tree.csv"), "x,y,species\n0,0,quercos robor\n").unwrap();

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use crate::{missing, replay, tools};
+use crate::{forest, missing, replay, species, tools};
 use tools::{burgeon, folder, good, names, status};
 
 /// Number of moments at which each command is interrupted, unless `BURGEON_INTERRUPTS` gives another.
@@ -27,7 +27,7 @@ const SOON: Duration = Duration::from_secs(1);
 const LATEST: Duration = Duration::from_millis(1500);
 
 /// Commands that are interrupted: arguments, in which `in/` names inputs. All files are written below `out`.
-const COMMANDS: [&[&str]; 20] = [
+const COMMANDS: [&[&str]; 22] = [
     &["sketch", "in/sample.svg", "-o", "out/s.obj", "--png", "out/s.png", "--report", "out/s.json"],
     &["sketch", "in/a.svg", "in/b.svg", "in/c.svg", "in/d.svg", "in/e.svg", "-o", "out/", "--png", "out/"],
     &[
@@ -54,6 +54,27 @@ const COMMANDS: [&[&str]; 20] = [
     &["info", "in/tree.glb", "--report", "out/i.json"],
     &["bloom", "run", "tulip", "-o", "out", "--frames", "6", "--report", "out/b.json"],
     &["bloom", "fit", "in/growth.csv", "-o", "out/f.json", "--plot", "out/f.svg", "--report", "out/r.json"],
+    &["species", "fit", "in/species.csv", "-o", "out/s.toml", "--trees", "40", "--report", "out/s.json"],
+    &[
+        "forest",
+        "in/trees.csv",
+        "-o",
+        "out/f",
+        "--detail",
+        "0.1",
+        "--sides",
+        "3",
+        "--textures",
+        "64",
+        "--lods",
+        "1",
+        "--impostor",
+        "128",
+        "--variants",
+        "1",
+        "--tile-trees",
+        "4",
+    ],
     &["studio", "in/sample.svg", "--folder", "in/page", "--no-open"],
     &["presets", "--show", "oak"],
     &["man", "out"],
@@ -77,6 +98,8 @@ fn inputs(dir: &Path) {
         fs::copy(fixtures.join(from), dir.join(to)).unwrap();
     }
     fs::write(dir.join("hands.json"), replay::record(12)).unwrap();
+    fs::write(dir.join("species.csv"), species::trees(6, 3)).unwrap();
+    forest::inventory(dir, 4);
     good(dir, &["grow", "hazel", "-o", "tree.glb", "-q"]);
     assert!(Command::new("mkfifo").arg(dir.join("pipe.stl")).status().unwrap().success(), "mkfifo");
     let mut points = String::new();
@@ -105,11 +128,26 @@ fn start(dir: &Path, args: &[&str]) -> Child {
     command.spawn().unwrap()
 }
 
-/// Returns the files below `out`, with their lengths.
+/// Returns the files below `out`, in folders below it as well, with their lengths.
 fn made(dir: &Path) -> BTreeMap<String, u64> {
-    let out = dir.join("out");
-    names(&out).into_iter().map(|name| (name.clone(), fs::metadata(out.join(name)).unwrap().len())).collect()
+    let mut found = BTreeMap::new();
+    let mut open = vec![String::new()];
+    while let Some(folder) = open.pop() {
+        for name in names(&dir.join("out").join(&folder)) {
+            let name = if folder.is_empty() { name } else { format!("{folder}/{name}") };
+            let about = fs::metadata(dir.join("out").join(&name)).unwrap();
+            if about.is_dir() {
+                open.push(name);
+            } else {
+                found.insert(name, about.len());
+            }
+        }
+    }
+    found
 }
+
+/// Journal of a forest that is not whole: the next run goes on where it ends.
+const JOURNAL: &str = "unfinished.jsonl";
 
 /// Waits for the end and returns its time.
 fn ended(child: &mut Child) -> (ExitStatus, Duration) {
@@ -164,7 +202,8 @@ fn interrupt(dir: &Path, args: &[&str], whole: &BTreeMap<String, u64>, (after, s
     let mut said = String::new();
     child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
     let now = made(dir);
-    assert!(!now.keys().any(|n| n.starts_with(".burgeon-")), "{what}: {now:?}");
+    let is_draft = |name: &String| name.split('/').any(|part| part.starts_with(".burgeon-"));
+    assert!(!now.keys().any(is_draft), "{what}: {now:?}");
     match status.code() {
         Some(0) => assert_eq!(now.len(), whole.len(), "{what}"),
         Some(130) => {
@@ -180,11 +219,17 @@ fn interrupt(dir: &Path, args: &[&str], whole: &BTreeMap<String, u64>, (after, s
         let of =
             |end: &str| now.keys().filter_map(|n| n.strip_suffix(end)).map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(of(".glb"), of(".png"), "{what}");
+    } else if args[0] == "forest" {
+        // Each file is whole, and either a journal or all of them are there.
+        let is_begun = now.keys().any(|name| name.ends_with(JOURNAL));
+        assert!(now.is_empty() || is_begun || now.len() == whole.len(), "{what}: {now:?}");
     } else {
         assert!(now.is_empty() || now.len() == whole.len(), "{what}: {now:?}");
     }
-    // Reports contain times.
-    let is_same = |(name, bytes): (&String, &u64)| name.ends_with(".json") || whole.get(name) == Some(bytes);
+    // Reports contain times, and a journal grows.
+    let is_same = |(name, bytes): (&String, &u64)| {
+        name.ends_with(".json") || name.ends_with(JOURNAL) || whole.get(name) == Some(bytes)
+    };
     assert!(now.iter().all(is_same), "{what}: {now:?}, not {whole:?}");
 }
 

@@ -3,10 +3,10 @@
 use base::{Cancelled, OverBudget, Stopped};
 use formats::LeafFileError;
 
-use crate::leaves::LeafError;
 use crate::make::MakeError;
 use crate::opening::OpeningError;
 use crate::trees::TreeError;
+use makers::LeafError;
 
 /// Reason why a plant of a scene could not be made.
 #[derive(Debug, thiserror::Error)]

@@ -34,7 +34,7 @@ fn width(spec: &BladeSpec) -> f64 {
 
 fn form_blade(spec: &BladeSpec) -> Blade {
     if spec.form == BladeForm::Spray {
-        let needles = Needles::of_length(spec.needle.unwrap_or(f64::NAN));
+        let needles = Needles::with_length(spec.needle.unwrap_or(f64::NAN));
         return Blade::shoot(needles, spec.shoots.unwrap_or(3), width(spec));
     }
     spec.form.blade()

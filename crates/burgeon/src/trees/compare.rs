@@ -21,7 +21,7 @@ pub fn guided_methods(method: &Method) -> Option<[Method; 2]> {
         Method::Colonization { envelope, .. } => envelope.whole(),
         _ => return None,
     };
-    let guided = GuidedSpec::of_crown(envelope.clone());
+    let guided = GuidedSpec::from_crown(envelope.clone());
     let (lo, hi) = envelope.prepare().ok()?.bounds();
     // A cone of half opening a between two radii holds 2 pi / 3 (1 - cos a)(R^3 - r^3).
     let reach = guided.internode_m * guided.far;

@@ -5,19 +5,17 @@
 use base::{Report, Run, Seed, Stopped, Telling, Warning};
 use document::PlantEdit;
 use growth::{BlossomSpec, Grown, Look, Method, TreeSpec};
+use makers::LeafTemplate;
 use mesh::Model;
 use plant::{Blade, BladeForm, Plant};
-use skin::{FoliageStyle, Layout, SkinSpec, SurfacePictures};
+use skin::{FoliageStyle, Layout, SkinSpec, SurfacePictures, coarser, coarser_with};
 
-use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
 use super::{Inside, OddMesh, TreeError, TreeOptions, scale_to_height, tree_blade};
 use crate::checks::{check_plant, check_tree};
 use crate::levels::LaidOut;
-use crate::lod::{coarser, coarser_with, keep_out};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
-use crate::template::LeafTemplate;
 
 /// Makes trees of a description that changes: an update recomputes only what a change affects.
 ///
@@ -187,7 +185,7 @@ impl TreeEvaluator {
         let Some(plant) = plant.filter(|_| self.done.contains(&"structure")) else { return Ok(None) };
         let fine = skin_spec(spec, seed, options);
         let (mut copy, skin) = coarser(plant, &fine, LOOK_LEVEL);
-        keep_out(&mut copy, (&skin, &fine), plant, LOOK_LEVEL, obstacles);
+        keep_clear(&mut copy, (&skin, &fine), plant, LOOK_LEVEL, obstacles);
         let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
         let (model, layout) = skinned(&copy, &from, run)?;
         Ok(Some((model, (copy, layout))))
@@ -270,7 +268,7 @@ impl TreeEvaluator {
         if (EARLIEST_FLOWERS..=0.0).contains(&spec.look.leaf_season()) {
             let share = spec.blossom.share * flowering(spec);
             let blossom = BlossomSpec { share, ..spec.blossom.clone() };
-            add_blossom(&blossom, &mut grown.plant, &raw.grown.flowers, obstacles, seed);
+            growth::add_blossom(&blossom, &mut grown.plant, &raw.grown.flowers, obstacles, seed);
         }
         let away = tint(&spec.look, &mut grown.plant, pictured, seed);
         (grown.leaves.kept, grown.leaves.fallen) = (grown.leaves.kept - away, grown.leaves.fallen + away);
@@ -347,7 +345,7 @@ impl TreeEvaluator {
         let (spec, (fine, look, leaf)) = (&raw.from.0, from);
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
         let (mut copy, skin) = coarser(plant, fine, level);
-        keep_out(&mut copy, (&skin, fine), plant, level, &obstacles);
+        keep_clear(&mut copy, (&skin, fine), plant, level, &obstacles);
         let (model, layout) = skinned(&copy, &(skin, look.clone(), leaf.clone()), run)?;
         Ok(Some((model, (copy, layout))))
     }
@@ -380,7 +378,7 @@ impl TreeEvaluator {
             counts: Counts {
                 vertices: model.vertex_count() as u64,
                 triangles: model.triangle_count() as u64,
-                ..Counts::of_plant(plant)
+                ..Counts::from_plant(plant)
             },
             timings_ms: TimingsMs::from_report(report),
             digest: if self.previewing { String::new() } else { plant.digest_hex() },
@@ -454,6 +452,22 @@ pub(crate) fn mesh_plant(
     }
     let (copy, skin) = coarser_with(plant, &fine, level, painted);
     Ok(skinned(&copy, &(skin, spec.look.clone(), options.leaf.clone()), run)?.0)
+}
+
+/// Gives leaves of a coarser copy of a plant that may enter an obstacle a smaller size, see [`skin::keep_out`].
+fn keep_clear(
+    copy: &mut Plant,
+    skins: (&SkinSpec, &SkinSpec),
+    plant: &Plant,
+    level: u32,
+    obstacles: &growth::Obstacles,
+) {
+    if !obstacles.is_empty() {
+        let is_free = |frame: &plant::Frame, scale: f64, corners: &[glam::DVec3]| {
+            obstacles.admit(frame, scale, corners)
+        };
+        skin::keep_out(copy, skins, plant, level, &is_free);
+    }
 }
 
 fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `evaluate` | a tree that changes: only what a change affects is made again |
 //! | `file` | TOML input; the places of faults in a text |
-//! | `blade`, `blossom`, `look` | forms of leaves; flowers in place of leaves; colours and bark |
+//! | `blade`, `look` | forms of leaves; colours and bark |
 //! | `presets` | the species that come with the program |
 //! | `scanned` | trees of laser scans |
 //! | `structured` | trees of files of structure |
@@ -14,7 +14,6 @@
 //! | `compare` | one oak by three methods |
 
 mod blade;
-mod blossom;
 mod compare;
 mod evaluate;
 mod file;
@@ -29,13 +28,13 @@ use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
+use makers::LeafTemplate;
 use mesh::Model;
 use skin::{Layout, SkinSpec};
 use spec::SpecFault;
 
 use crate::levels::{LevelSpec, Levels};
 use crate::report::{GrowthReport, ItemReport};
-use crate::template::LeafTemplate;
 
 pub use blade::tree_blade;
 pub use compare::{

@@ -1,7 +1,6 @@
 //! Trees end to end.
 
 use super::*;
-use crate::lod::coarser;
 use base::{CancelToken, Executor};
 use glam::{DVec2, DVec3};
 
@@ -196,7 +195,7 @@ fn levels_of_detail_become_coarser_and_stay_sound() {
         let n = lod.triangle_count();
         assert!(n < last * 7 / 10 && n > 100, "level {level}: {n} after {last}");
         last = n;
-        let (plant, _) = coarser(&made.grown.plant, &options.skin, level);
+        let (plant, _) = skin::coarser(&made.grown.plant, &options.skin, level);
         assert_eq!(plant.validate().next(), None);
         let keys =
             |p: &plant::Plant| p.organs.iter().map(|o| o.key).collect::<std::collections::BTreeSet<_>>();

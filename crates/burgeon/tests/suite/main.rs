@@ -6,13 +6,16 @@ mod missing;
 mod share;
 
 mod again;
+mod blossom;
 mod colours;
 mod doubts;
+mod drawn;
 mod fidelity;
 mod levels;
 mod lives;
 mod scans;
 mod schemas;
+mod survey;
 mod wood;
 
 /// Number of species of which each run tests one, where a test grows a species at many ages or measures all of its

@@ -221,7 +221,7 @@ fn crooked(seed: u64, thickest: f64) -> plant::Plant {
 
 /// Returns, for sixty crooked trees, the number of feet, of those outside all other wood, and the worst distance.
 #[expect(clippy::print_stdout, reason = "figures for docs/trees.md")]
-fn of_crooked(thickest: f64) -> (usize, usize, f64) {
+fn measure_crooked(thickest: f64) -> (usize, usize, f64) {
     let (mut branches, mut free, mut worst) = (0, 0, 0.0_f64);
     for seed in 0..60 {
         let plant = crooked(seed, thickest);
@@ -243,7 +243,7 @@ fn of_crooked(thickest: f64) -> (usize, usize, f64) {
 #[test]
 fn twigs_at_the_turns_of_stout_limbs_are_borne_by_them() {
     // Limbs as thick as the distance between two turns.
-    let (branches, free, worst) = of_crooked(0.12);
+    let (branches, free, worst) = measure_crooked(0.12);
     assert!(
         branches > 4000 && 1000 * free < branches,
         "{free} of {branches} feet lie outside all other wood"
@@ -253,7 +253,7 @@ fn twigs_at_the_turns_of_stout_limbs_are_borne_by_them() {
 
 #[test]
 fn twigs_at_the_turns_of_level_limbs_are_borne_by_them() {
-    let (branches, free, worst) = of_crooked(0.04);
+    let (branches, free, worst) = measure_crooked(0.04);
     assert!(worst < 0.003 * 11.0, "a foot {worst} m from all other wood");
     assert!(branches > 4000 && 500 * free < branches, "{free} of {branches} feet lie outside all other wood");
 }

@@ -58,7 +58,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
     };
     let system = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty());
     if let Some(text) = system {
-        let system = super::las_system::System::of_wkt(text);
+        let system = super::las_system::System::from_wkt(text);
         sink.system = Some(system.as_ref().map_or_else(|| base::brief(text), |s| s.name.clone()));
         sink.unit = system.and_then(|s| s.unit);
     }

@@ -155,7 +155,7 @@ impl ClassCount {
         let own = sink.names.get(&class);
         let name =
             own.map(String::as_str).or(NAMES.get(usize::from(class)).copied()).unwrap_or("of its maker");
-        let used_as = match own.and_then(|name| Said::of_word(name)).unwrap_or(Said::of_number(class)) {
+        let used_as = match own.and_then(|name| Said::from_word(name)).unwrap_or(Said::from_number(class)) {
             Said::Noise => "left out",
             Said::Class(mesh::PointClass::Unknown) => "",
             Said::Class(class) => class.word(),

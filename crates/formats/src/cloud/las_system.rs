@@ -33,16 +33,16 @@ impl System {
         let find = |id| records.iter().find(|r| r.is(USER, id)).map(|r| r.data);
         if let Some(text) = find(WKT) {
             let text = String::from_utf8_lossy(text);
-            if let Some(system) = Self::of_wkt(text.trim_matches(['\0', ' ', '\n', '\r'])) {
+            if let Some(system) = Self::from_wkt(text.trim_matches(['\0', ' ', '\n', '\r'])) {
                 return Some(system);
             }
         }
-        Self::of_keys(find(KEYS)?, find(TEXTS).unwrap_or_default())
+        Self::from_keys(find(KEYS)?, find(TEXTS).unwrap_or_default())
     }
 
     /// The name is the first text in it; the unit is that of the last length before heights are defined, but for those that
     /// ellipsoids have.
-    pub(super) fn of_wkt(text: &str) -> Option<Self> {
+    pub(super) fn from_wkt(text: &str) -> Option<Self> {
         let name = text.split('"').nth(1)?.to_owned();
         let plane = ["VERT_CS", "VERTCRS", "VERTICALCRS"].iter().filter_map(|word| text.find(word)).min();
         let plane = &text[..plane.unwrap_or(text.len())];
@@ -69,7 +69,7 @@ impl System {
     }
 
     /// Keys are whole numbers of 16 bits, four each after the first four: key, where its value is, how long, the value.
-    fn of_keys(keys: &[u8], texts: &[u8]) -> Option<Self> {
+    fn from_keys(keys: &[u8], texts: &[u8]) -> Option<Self> {
         let words: Vec<u16> = keys.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
         let rows = || words.get(4..).unwrap_or_default().chunks_exact(4);
         let value = |key: u16| rows().find(|r| r[0] == key && r[1] == 0).map(|r| r[3]);
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn well_known_texts_name_the_system_and_its_unit() {
-        let of = |text| System::of_wkt(text).unwrap();
+        let of = |text| System::from_wkt(text).unwrap();
         let feet = r#"COMPD_CS["NAD83 / Oregon + NAVD88",PROJCS["NAD83 / Oregon North (ft)",GEOGCS["NAD83",DATUM["NAD83",SPHEROID["GRS 1980",6378137,298.257]],UNIT["degree",0.0174532925199433]],PROJECTION["x"],UNIT["foot",0.3048]],VERT_CS["NAVD88",VERT_DATUM["x",2005],UNIT["metre",1]]]"#;
         let system = of(feet);
         assert_eq!((system.name.as_str(), system.is_in_degrees), ("NAD83 / Oregon + NAVD88", false));
@@ -119,7 +119,7 @@ mod tests {
         assert!(!of(metres).is_in_degrees);
         let degrees = r#"GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257]],UNIT["degree",0.0174532925199433]]"#;
         assert_eq!((of(degrees).is_in_degrees, of(degrees).unit), (true, None));
-        assert_eq!((System::of_wkt(""), System::of_wkt("PROJCS[")), (None, None));
+        assert_eq!((System::from_wkt(""), System::from_wkt("PROJCS[")), (None, None));
     }
 
     #[test]
@@ -128,7 +128,7 @@ mod tests {
             let words =
                 [[1, 1, 0, u16::try_from(rows.len()).unwrap()]].into_iter().chain(rows.iter().copied());
             let bytes: Vec<u8> = words.flatten().flat_map(u16::to_le_bytes).collect();
-            System::of_keys(&bytes, b"UTM 32N|rest|")
+            System::from_keys(&bytes, b"UTM 32N|rest|")
         };
         let system =
             of(&[[1024, 0, 1, 1], [3072, 0, 1, 25832], [3073, 34737, 8, 0], [3076, 0, 1, 9003]]).unwrap();

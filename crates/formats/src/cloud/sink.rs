@@ -56,7 +56,7 @@ pub(super) enum Said {
 
 impl Said {
     /// Returns the meaning of a class of LAS, by the numbers of its specification.
-    pub(super) const fn of_number(class: u8) -> Self {
+    pub(super) const fn from_number(class: u8) -> Self {
         match class {
             // Ground, and the few points of it that suffice (of LAS up to 1.3).
             2 | 8 => Self::Class(PointClass::Ground),
@@ -67,7 +67,7 @@ impl Said {
     }
 
     /// Returns the meaning of a word or phrase.
-    pub(super) fn of_word(word: &str) -> Option<Self> {
+    pub(super) fn from_word(word: &str) -> Option<Self> {
         let word = word.to_ascii_lowercase();
         let has = |words: &[&str]| words.iter().any(|w| word.contains(w));
         if has(&["noise", "outlier"]) {
@@ -144,7 +144,7 @@ impl Sink {
     /// Counts a point whose class is a number.
     pub(super) fn numbered(&mut self, class: u8) -> Said {
         *self.numbers.entry(class).or_default() += 1;
-        self.names.get(&class).and_then(|name| Said::of_word(name)).unwrap_or(Said::of_number(class))
+        self.names.get(&class).and_then(|name| Said::from_word(name)).unwrap_or(Said::from_number(class))
     }
 
     fn takes(&mut self, p: [f64; 3], said: Option<Said>) -> bool {

@@ -230,7 +230,7 @@ fn said(class: ClassColumn, row: &Row<'_>, sink: &mut Sink) -> Said {
     let unknown = Said::Class(PointClass::Unknown);
     let number = row.numbers[class.at];
     if number.is_nan() {
-        return Said::of_word(&String::from_utf8_lossy(row.words[class.at])).unwrap_or(unknown);
+        return Said::from_word(&String::from_utf8_lossy(row.words[class.at])).unwrap_or(unknown);
     }
     if !class.is_numbered {
         return unknown;

@@ -11,7 +11,7 @@ pub(super) struct Fields {
 
 impl Fields {
     /// Chooses semicolons if there is one, else tabs, else commas.
-    pub(super) fn of_header(header: &str) -> Self {
+    pub(super) fn from_header(header: &str) -> Self {
         let separator = [';', '\t'].into_iter().find(|&s| header.contains(s)).unwrap_or(',');
         Self { separator, count: header.split(separator).count() }
     }
@@ -55,14 +55,14 @@ mod tests {
 
     #[test]
     fn the_first_line_says_what_separates() {
-        let fields = Fields::of_header("row;mark;x");
+        let fields = Fields::from_header("row;mark;x");
         assert_eq!(fields.row("1; 2 ;3,5").unwrap(), ["1", "2", "3,5"]);
         assert_eq!((fields.number("3,5"), fields.number("-3.5")), (Some(3.5), Some(-3.5)));
         assert_eq!(
             (fields.number("1,000.5"), fields.number("1,2,3"), fields.number("1e99")),
             (None, None, None)
         );
-        let fields = Fields::of_header("row,mark,x");
+        let fields = Fields::from_header("row,mark,x");
         assert_eq!(fields.number("3,5"), None);
         assert_eq!(fields.row("1,2,3,,").unwrap().len(), 5, "empty fields at the end are none");
         let fault = fields.row("1,2,3,5").unwrap_err().to_string();

@@ -262,7 +262,7 @@ impl Header {
         order: Option<DateOrder>,
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, FileFault> {
-        let fields = Fields::of_header(line);
+        let fields = Fields::from_header(line);
         let names: Vec<&str> = fields.split(line).iter().map(|f| f.trim_matches('"').trim()).collect();
         let (mut columns, mut time) = (Vec::new(), TimeUnit::Day);
         for name in &names {

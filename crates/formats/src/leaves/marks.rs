@@ -98,7 +98,7 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
             let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
             match &columns {
                 None => {
-                    let fields = Fields::of_header(line);
+                    let fields = Fields::from_header(line);
                     columns = Some((fields, header(&fields.split(line)).map_err(placed)?));
                 }
                 Some((fields, columns)) => {

@@ -66,7 +66,7 @@ pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRa
             continue;
         }
         let Some((fields, columns)) = &columns else {
-            let fields = Fields::of_header(line);
+            let fields = Fields::from_header(line);
             columns = Some((fields, header(&fields.split(line)).map_err(placed)?));
             continue;
         };

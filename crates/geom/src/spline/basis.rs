@@ -138,7 +138,7 @@ impl Basis {
     /// Returns the weights of the controls at `t`. Cost: degree squared.
     pub fn weights(&self, t: f64) -> Weights {
         let span = self.span(t);
-        self.of_degree(self.degree, span, self.clamp(t))
+        self.functions_of_degree(self.degree, span, self.clamp(t))
     }
 
     /// Returns the derivatives of the weights at `t`; at an inner knot those of the span to its right.
@@ -169,7 +169,7 @@ impl Basis {
     }
 
     /// Returns the basis functions of degree `q`, at most the own degree (NURBS Book, A2.2).
-    fn of_degree(&self, q: usize, span: usize, t: f64) -> Weights {
+    fn functions_of_degree(&self, q: usize, span: usize, t: f64) -> Weights {
         let mut values = [0.0; MAX_DEGREE + 1];
         values[0] = 1.0;
         for j in 1..=q {
@@ -192,7 +192,7 @@ impl Basis {
         if order > p {
             return Weights { first: span - p, count: p + 1, values: [0.0; MAX_DEGREE + 1] };
         }
-        let mut w = self.of_degree(p - order, span, t);
+        let mut w = self.functions_of_degree(p - order, span, t);
         for q in p - order + 1..=p {
             let first = span - q;
             let mut values = [0.0; MAX_DEGREE + 1];

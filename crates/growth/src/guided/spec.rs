@@ -181,7 +181,7 @@ impl GuidedSpec {
     /// internodes are a thirty-eighth of the envelope's mean extent (a ninetieth of its longest, if that is more),
     /// rounds enough to reach its ends, and vigour, pull and markers such that a crown is full and its leader upright.
     /// An invalid envelope keeps the default numbers; growth then reports its fault.
-    pub fn of_crown(envelope: Envelope) -> Self {
+    pub fn from_crown(envelope: Envelope) -> Self {
         let envelope = envelope.whole();
         let size = envelope.prepare().map_or(DVec3::ZERO, |region| {
             let (lo, hi) = region.bounds();

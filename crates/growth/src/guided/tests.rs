@@ -96,7 +96,7 @@ fn crowns_of_any_size_are_filled() {
     let none = Obstacles::none();
     for scale in [0.3, 5.0] {
         let envelope = Envelope::Sphere { centre: DVec3::Y * 2.0 * scale, radius_m: scale };
-        let spec = GuidedSpec { markers: 12, ..GuidedSpec::of_crown(envelope.clone()) };
+        let spec = GuidedSpec { markers: 12, ..GuidedSpec::from_crown(envelope.clone()) };
         let run = Run::plain();
         let tree =
             guide(&[DVec3::ZERO], &none, &spec, Seed::new(1), &run, &mut Report::default()).expect("sound");
@@ -110,7 +110,7 @@ fn crowns_of_any_size_are_filled() {
     }
     let bad = Envelope::Sphere { centre: DVec3::ZERO, radius_m: -1.0 };
     assert_eq!(
-        GuidedSpec::of_crown(bad.clone()),
+        GuidedSpec::from_crown(bad.clone()),
         GuidedSpec { envelope: Some(bad), ..GuidedSpec::default() }
     );
 }

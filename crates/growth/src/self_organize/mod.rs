@@ -391,7 +391,7 @@ impl Forest<'_> {
         let v = match &self.light {
             LightModel::Shadow(Shade { grid, voxel, .. }) => grid.slope(voxel[joint]).normalize_or_zero(),
             LightModel::Sky(sky) => sky.towards(joint),
-            LightModel::Space(space) => space.of_bud(joint, bud),
+            LightModel::Space(space) => space.direction_of_bud(joint, bud),
         };
         let mut heading = match bud {
             None => self.grove.heading[joint],

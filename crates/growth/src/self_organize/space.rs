@@ -127,7 +127,7 @@ impl Space {
     }
 
     /// Returns the direction V of one bud.
-    pub(super) fn of_bud(&self, joint: usize, bud: Option<usize>) -> DVec3 {
+    pub(super) fn direction_of_bud(&self, joint: usize, bud: Option<usize>) -> DVec3 {
         let per_node = self.stride - 1;
         let row = joint * self.stride + bud.map_or(0, |k| 1 + k - joint * per_node);
         self.sum[row].normalize_or_zero()

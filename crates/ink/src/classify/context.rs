@@ -104,7 +104,7 @@ struct Whole {
 }
 
 impl KeptMeasures {
-    pub(super) fn of_plant(&mut self, rows: &[usize]) -> &mut Self {
+    pub(super) fn measures_of_plant(&mut self, rows: &[usize]) -> &mut Self {
         self.plants.entry(rows.first().copied().unwrap_or_default()).or_default()
     }
 

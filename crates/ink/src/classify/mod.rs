@@ -152,7 +152,7 @@ fn judge_each(
     for rows in &ink.subjects.plants {
         let part = ink.part(rows);
         let own: Vec<Option<Classified>> = rows.iter().map(|&i| known.get(i).copied().flatten()).collect();
-        let judged = judge(models, &part, &own, kept.of_plant(rows), run);
+        let judged = judge(models, &part, &own, kept.measures_of_plant(rows), run);
         for (&row, class) in rows.iter().zip(judged) {
             if let Some(slot) = found.get_mut(row) {
                 *slot = class;

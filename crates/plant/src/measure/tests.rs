@@ -245,7 +245,7 @@ fn a_shoot_counts_what_its_needles_cover() {
     let mut p = Plant::default();
     let stem = axis(&mut p, None, &[DVec3::ZERO, DVec3::Y], &[0.01; 2]);
     let at = node(&p, stem, 1);
-    let flat = Blade { relief: Relief::default(), ..Blade::shoot(Needles::of_length(0.1), 3, 1.0) };
+    let flat = Blade { relief: Relief::default(), ..Blade::shoot(Needles::with_length(0.1), 3, 1.0) };
     let outline = geom::signed_area(&flat.outline).abs();
     let covered = NeedleMap::from_blade(&flat).expect("needles").covered();
     let shoot = p.add_shape(Shape::Blade(flat.clone()));

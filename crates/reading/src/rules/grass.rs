@@ -50,7 +50,7 @@ pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {
         .collect();
     // A line that lies next to the row continues it; an outline that stands is a plant of another kind.
     let (lying, standing): (Vec<usize>, Vec<usize>) =
-        draft.of_class(TrunkOutline).into_iter().filter(|k| !rows.contains(k)).partition(|&k| {
+        draft.strokes_of_class(TrunkOutline).into_iter().filter(|k| !rows.contains(k)).partition(|&k| {
             let s = &draft.ink.strokes[k];
             let wide = bounds(&s.points).is_some_and(|(lo, hi)| hi.y - lo.y < 0.5 * (hi.x - lo.x));
             wide && openness(s) > 0.5 && unsure(draft, k)

@@ -100,7 +100,7 @@ pub(super) fn outlines_are_no_twigs(draft: &Draft<'_>) -> Findings {
     if !draft.is_tree() {
         return found;
     }
-    for k in draft.of_class(StrokeClass::Axis) {
+    for k in draft.strokes_of_class(StrokeClass::Axis) {
         let s = &draft.ink.strokes[k];
         if !free(draft, k) || draft.rule[k] != Some(READ_AS) || openness(s) > CLOSED {
             continue;

@@ -360,7 +360,7 @@ fn upright(draft: &Draft<'_>, k: usize) -> bool {
 /// Returns the upper and lower ends of the upright lines of a class.
 fn standing(draft: &Draft<'_>, class: StrokeClass) -> Vec<(usize, DVec2, DVec2)> {
     draft
-        .of_class(class)
+        .strokes_of_class(class)
         .into_iter()
         .filter(|&k| upright(draft, k))
         .map(|k| {

@@ -14,7 +14,7 @@ const TOUCH: f64 = 0.025;
 pub(super) fn stems(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let blades: Vec<&[DVec2]> = draft
-        .of_class(StrokeClass::Blade)
+        .strokes_of_class(StrokeClass::Blade)
         .into_iter()
         .filter_map(|k| draft.ink.strokes[k].outline())
         .collect();

@@ -68,7 +68,11 @@ const CROWN_FOOT: f64 = 0.2;
 pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     // A trunk that was drawn as a closed outline needs no sides.
-    if draft.of_class(StrokeClass::TrunkOutline).iter().any(|&k| openness(&draft.ink.strokes[k]) < 0.5) {
+    if draft
+        .strokes_of_class(StrokeClass::TrunkOutline)
+        .iter()
+        .any(|&k| openness(&draft.ink.strokes[k]) < 0.5)
+    {
         return found;
     }
     let mut lines = standing(draft, StrokeClass::TrunkOutline);
@@ -77,7 +81,7 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
     }
     let crowns: Vec<&[DVec2]> = [StrokeClass::Crown, StrokeClass::Scribble]
         .into_iter()
-        .flat_map(|c| draft.of_class(c))
+        .flat_map(|c| draft.strokes_of_class(c))
         .map(|k| draft.ink.strokes[k].hull())
         .filter(|h| h.len() > 2)
         .collect();
@@ -237,7 +241,7 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Crown, Disc, Fruit};
     let mut found = Findings::default();
     let outline = |k: usize| crown_outline(&draft.ink.strokes[k].points);
-    let crowns: Vec<Vec<DVec2>> = draft.of_class(Crown).into_iter().filter_map(outline).collect();
+    let crowns: Vec<Vec<DVec2>> = draft.strokes_of_class(Crown).into_iter().filter_map(outline).collect();
     for k in 0..draft.class.len() {
         if !unsure(draft, k) || ![Axis, Blade, Disc].contains(&draft.class[k]) {
             continue;
@@ -265,9 +269,12 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
 pub(super) fn line_is_no_fruit(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Crown, Fruit, Ground};
     let mut found = Findings::default();
-    let crowns: Vec<(DVec2, DVec2)> =
-        draft.of_class(Crown).into_iter().filter_map(|k| bounds(&draft.ink.strokes[k].points)).collect();
-    for k in draft.of_class(Fruit) {
+    let crowns: Vec<(DVec2, DVec2)> = draft
+        .strokes_of_class(Crown)
+        .into_iter()
+        .filter_map(|k| bounds(&draft.ink.strokes[k].points))
+        .collect();
+    for k in draft.strokes_of_class(Fruit) {
         let s = &draft.ink.strokes[k];
         let Some((lo, hi)) = bounds(&s.points).filter(|_| unsure(draft, k) && openness(s) > LINE) else {
             continue;

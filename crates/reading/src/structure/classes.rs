@@ -73,7 +73,7 @@ impl Structure {
 
     /// Takes over a reader's results for the strokes that it made of the drawing: the class of each, and the
     /// attachment of blades.
-    pub(crate) fn of_parts(
+    pub(crate) fn from_parts(
         classes: Vec<StrokeClass>,
         hidden: LiteMap<usize, Hidden>,
         heads: Vec<Vec<usize>>,

@@ -63,7 +63,7 @@ impl Composed {
             .iter()
             .map(|&class| said(class, CONFIDENCE_LIMITS.by_arrangement_least, ARRANGEMENT))
             .collect();
-        let structure = Structure::of_parts(classes, hidden, proposal.heads.clone());
+        let structure = Structure::from_parts(classes, hidden, proposal.heads.clone());
         Self { ink: own, classes: classified, structure, made_of }
     }
 

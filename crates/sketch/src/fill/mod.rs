@@ -173,13 +173,13 @@ pub(crate) fn fill(
                 (twigs.grow(plant, &mut Vec::new()), 0)
             }
             RegionKind::Leaves => {
-                let (foliage, leaves) = look.of_cluster(plant, &volume);
+                let (foliage, leaves) = look.fill_cluster(plant, &volume);
                 Leaves { volume: &volume, spec, seed, bearers: &bearers, foliage, leaves, salt: rank }
                     .grow(plant)
             }
             RegionKind::Crown => {
                 let habit = Habit::infer(&volume, plant.axis_points(bearers[0]));
-                let (foliage, leaves) = look.of_crown(plant, &volume, habit);
+                let (foliage, leaves) = look.fill_crown(plant, &volume, habit);
                 let woody = ctx.woody;
                 let bearers = &bearers;
                 Crown { volume: &volume, spec, seed, bearers, foliage, leaves, habit, woody, salt: rank }
@@ -338,7 +338,7 @@ impl Look<'_> {
         (id, 1.0)
     }
 
-    fn of_crown(&mut self, plant: &mut Plant, volume: &Volume, habit: Habit) -> (Foliage, usize) {
+    fn fill_crown(&mut self, plant: &mut Plant, volume: &Volume, habit: Habit) -> (Foliage, usize) {
         // Diameter of the circle with the contour's area.
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
         let conifer = habit == Habit::Excurrent;
@@ -374,7 +374,7 @@ impl Look<'_> {
         (foliage, leaves.min(self.share))
     }
 
-    fn of_cluster(&mut self, plant: &mut Plant, volume: &Volume) -> (Foliage, usize) {
+    fn fill_cluster(&mut self, plant: &mut Plant, volume: &Volume) -> (Foliage, usize) {
         let mut shapes = self.drawn.to_vec();
         let room = 1.6 * volume.inradius;
         let length = self.natural.unwrap_or(leaves::DEFAULT_LENGTH * self.height_m).min(room);

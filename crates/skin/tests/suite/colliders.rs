@@ -7,12 +7,12 @@ use mesh::TriMesh;
 use plant::{AxisKind, NodeId, Plant};
 use skin::{colliders, joined_colliders};
 
-fn at(mesh: &TriMesh, corner: u32) -> DVec3 {
+fn corner_at(mesh: &TriMesh, corner: u32) -> DVec3 {
     DVec3::from_array(mesh.positions[corner as usize].map(f64::from))
 }
 
 fn volume(mesh: &TriMesh) -> f64 {
-    let six = |t: &[u32; 3]| at(mesh, t[0]).dot(at(mesh, t[1]).cross(at(mesh, t[2])));
+    let six = |t: &[u32; 3]| corner_at(mesh, t[0]).dot(corner_at(mesh, t[1]).cross(corner_at(mesh, t[2])));
     mesh.triangles.iter().map(six).sum::<f64>() / 6.0
 }
 
@@ -42,9 +42,9 @@ fn each_shape_is_closed_and_convex() {
         let mut edges = BTreeMap::new();
         for t in &shape.triangles {
             (0..3).for_each(|k| *edges.entry((t[k], t[(k + 1) % 3])).or_insert(0) += 1);
-            let [a, b, c] = t.map(|corner| at(shape, corner));
+            let [a, b, c] = t.map(|corner| corner_at(shape, corner));
             let out = (b - a).cross(c - a).normalize();
-            let over = (0..12).map(|k| (at(shape, k) - a).dot(out)).fold(f64::MIN, f64::max);
+            let over = (0..12).map(|k| (corner_at(shape, k) - a).dot(out)).fold(f64::MIN, f64::max);
             // Corners are f32: a hundredth of a millimetre.
             assert!(over < 1e-5, "nothing lies before a face: {over}");
         }

@@ -218,7 +218,7 @@ fn crown_leaves_are_coarse_but_fold() {
 fn shoots_in_needles_are_cut_out_of_cards_beside_leaves_that_are_not() {
     let mut p = scenes::leafy(60);
     let shoot =
-        p.add_shape(plant::Shape::Blade(plant::Blade::shoot(plant::Needles::of_length(0.08), 3, 1.0)));
+        p.add_shape(plant::Shape::Blade(plant::Blade::shoot(plant::Needles::with_length(0.08), 3, 1.0)));
     for organ in p.organs.iter_mut().skip(40) {
         organ.shape = shoot;
     }

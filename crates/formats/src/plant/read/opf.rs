@@ -120,7 +120,7 @@ impl Meshes {
         out
     }
 
-    fn of_shape(&self, shape: i64) -> Option<&Reference> {
+    fn mesh_of_shape(&self, shape: i64) -> Option<&Reference> {
         self.meshes.get(self.of_shape.get(&shape)?)
     }
 }
@@ -301,7 +301,7 @@ fn matrix(geometry: Node<'_, '_>) -> Option<[DVec3; 4]> {
 }
 
 fn mesh_of<'a>(geometry: Node<'_, '_>, meshes: &'a Meshes) -> Option<&'a Reference> {
-    meshes.of_shape(whole(child(geometry, "shapeIndex").and_then(|s| s.text()))?)
+    meshes.mesh_of_shape(whole(child(geometry, "shapeIndex").and_then(|s| s.text()))?)
 }
 
 /// Returns an internode: its mesh lies along x.

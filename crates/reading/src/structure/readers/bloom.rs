@@ -130,16 +130,17 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     let mut parts = scene.leaves_among(rest().filter(|k| !petals.contains(k)), BLOOM.other)?;
     let first = parts.len();
     let to_centre = |f: &Face| Some(nearest_on_ring(&f.outline, centre).0);
-    parts.extend(petals.iter().map(|&k| Part::of_face(&faces[k], StrokeClass::Blade, to_centre(&faces[k]))));
+    parts
+        .extend(petals.iter().map(|&k| Part::from_face(&faces[k], StrokeClass::Blade, to_centre(&faces[k]))));
     let heads = if disc.is_some() { Vec::new() } else { vec![(first..parts.len()).collect()] };
-    parts.extend(disc.map(|k| Part::of_face(&faces[k], StrokeClass::Disc, None)));
+    parts.extend(disc.map(|k| Part::from_face(&faces[k], StrokeClass::Disc, None)));
     let outer = most(&mut reaches());
     parts.extend(
         scene
             .axes
             .iter()
             .filter(|axis| axis.points.iter().any(|p| p.distance(centre) > outer + LIMITS.touch))
-            .map(Part::of_axis),
+            .map(Part::from_axis),
     );
     Some(Proposal {
         kind: Kind::Flower,

@@ -62,8 +62,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     let is_berry = |f: &&Face| f.shape.area > BUNCH.hidden * usual;
     let mut parts: Vec<Part> =
-        scene.faces.iter().filter(is_berry).map(|f| Part::of_face(f, StrokeClass::Fruit, None)).collect();
-    parts.extend(scene.axes.iter().map(Part::of_axis));
+        scene.faces.iter().filter(is_berry).map(|f| Part::from_face(f, StrokeClass::Fruit, None)).collect();
+    parts.extend(scene.axes.iter().map(Part::from_axis));
     let (heads, likelihood, word) = (Vec::new(), BUNCH.likelihood, Some("grapes"));
     Some(Proposal { kind: Kind::Fruit, parts, heads, likelihood, word, is_of_pieces: false })
 }

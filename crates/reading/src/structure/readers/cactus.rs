@@ -62,7 +62,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     let is_ground = |points: &[DVec2]| points.iter().all(|p| p.y < low.y + CACTUS.ground * size.y);
-    let mut parts = vec![Part::of_face(body, StrokeClass::TrunkOutline, None)];
+    let mut parts = vec![Part::from_face(body, StrokeClass::TrunkOutline, None)];
     for axis in scene.axes.iter().filter(|a| !is_ground(&a.points)) {
         let line = arm(&axis.points, body, low, size)?;
         let points = column(&line, CACTUS.half_width * size.x)?;
@@ -72,7 +72,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     for face in (0..scene.faces.len()).filter(|k| *k != row).map(|k| &scene.faces[k]) {
         let [a, b] = face.shape.ends;
         arm(&[a, b], body, low, size)?;
-        parts.push(Part::of_face(face, StrokeClass::TrunkOutline, None));
+        parts.push(Part::from_face(face, StrokeClass::TrunkOutline, None));
     }
     let arms = parts.len() - 1;
     parts.extend(scene.axes.iter().filter(|a| is_ground(&a.points)).map(ground));
@@ -89,7 +89,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
 }
 
 fn ground(axis: &Axis) -> Part {
-    Part { class: StrokeClass::Ground, ..Part::of_axis(axis) }
+    Part { class: StrokeClass::Ground, ..Part::from_axis(axis) }
 }
 
 /// Whether a body is a column that is closed by a dome: neither a cone nor a bottle.

@@ -55,10 +55,10 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     });
     let mut parts: Vec<Part> = faces
         .iter()
-        .map(|f| Part::of_face(f, StrokeClass::Blade, Some(nearest_on_ring(&f.outline, middle).0)))
+        .map(|f| Part::from_face(f, StrokeClass::Blade, Some(nearest_on_ring(&f.outline, middle).0)))
         .collect();
-    parts.extend(stalks.map(|l| Part::of_run(l, StrokeClass::Axis)));
-    parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
+    parts.extend(stalks.map(|l| Part::from_run(l, StrokeClass::Axis)));
+    parts.extend(scene.marks.iter().map(|(_, run)| Part::from_run(run, StrokeClass::Vein)));
     Some(Proposal {
         kind: Kind::Leaf,
         parts,

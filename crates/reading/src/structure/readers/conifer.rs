@@ -98,12 +98,12 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if scene.lines.iter().any(|l| polyline_length(&l.points) > CONIFER.longest_line * (high.y - low.y)) {
         return None;
     }
-    let mut parts = vec![Part::of_face(&face, StrokeClass::Crown, None)];
+    let mut parts = vec![Part::from_face(&face, StrokeClass::Crown, None)];
     match trunk_face {
-        Some(k) => parts.push(Part::of_face(&scene.faces[k], StrokeClass::TrunkOutline, None)),
+        Some(k) => parts.push(Part::from_face(&scene.faces[k], StrokeClass::TrunkOutline, None)),
         None => {
             let class = if lines.len() > 1 { StrokeClass::TrunkOutline } else { StrokeClass::Axis };
-            parts.extend(lines.iter().map(|l| Part::of_run(l, class)));
+            parts.extend(lines.iter().map(|l| Part::from_run(l, class)));
         }
     }
     Some(Proposal {

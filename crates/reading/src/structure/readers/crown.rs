@@ -59,7 +59,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         && (top.y - low.y).abs() < scene.touch;
     (is_central && is_crown).then(|| Proposal {
         kind: Kind::Tree,
-        parts: vec![Part::of_face(face, StrokeClass::Crown, None), Part::of_run(line, StrokeClass::Axis)],
+        parts: vec![Part::from_face(face, StrokeClass::Crown, None), Part::from_run(line, StrokeClass::Axis)],
         heads: Vec::new(),
         likelihood: CROWN.likelihood,
         word: None,

@@ -151,7 +151,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     parts.extend(scene.leaves_among(beside(), CUP.other)?);
-    parts.extend(scene.axes.iter().map(Part::of_axis));
+    parts.extend(scene.axes.iter().map(Part::from_axis));
     let likelihood = CUP.likelihood[usize::from(in_front < CUP.in_front)];
     Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None, is_of_pieces: false })
 }

@@ -97,8 +97,8 @@ fn with_ribs(scene: &Scene) -> Option<Proposal> {
     {
         return None;
     }
-    let mut parts = vec![Part::of_face(body, StrokeClass::Fruit, None)];
-    parts.extend(scene.lines.iter().map(|line| Part::of_run(line, StrokeClass::Axis)));
+    let mut parts = vec![Part::from_face(body, StrokeClass::Fruit, None)];
+    parts.extend(scene.lines.iter().map(|line| Part::from_run(line, StrokeClass::Axis)));
     Some(Proposal { is_of_pieces: false, ..proposal(parts, FRUIT.likelihood[0]) })
 }
 
@@ -136,11 +136,11 @@ fn with_leaves(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     let top = nearest_on_ring(&body.outline, DVec2::new(low.midpoint(high).x, high.y)).0;
-    let mut parts = vec![Part::of_face(body, StrokeClass::Fruit, None)];
-    parts.extend(scene.lines.iter().map(|line| Part::of_run(line, StrokeClass::Axis)));
+    let mut parts = vec![Part::from_face(body, StrokeClass::Fruit, None)];
+    parts.extend(scene.lines.iter().map(|line| Part::from_run(line, StrokeClass::Axis)));
     for leaf in leaves {
         let (root, stalk) = root_on(scene, body, leaf, top);
-        parts.push(Part::of_face(leaf, StrokeClass::Blade, Some(root)));
+        parts.push(Part::from_face(leaf, StrokeClass::Blade, Some(root)));
         parts.extend(stalk);
     }
     Some(proposal(parts, FRUIT.likelihood[1]))
@@ -175,7 +175,7 @@ fn slice(scene: &Scene) -> Option<Proposal> {
         && has_straight_side(&whole);
     let has_flesh = faces.len() > 1 || !scene.marks.is_empty();
     let is_alone = scene.lines.is_empty() && scene.axes.iter().all(|a| is_within(a, &whole, scene.touch));
-    let body = vec![Part::of_face(&whole, StrokeClass::Fruit, None)];
+    let body = vec![Part::from_face(&whole, StrokeClass::Fruit, None)];
     let slice = Proposal { word: Some("watermelon"), ..proposal(body, FRUIT.likelihood[2]) };
     (is_slice && has_flesh && is_alone).then_some(slice)
 }

@@ -133,7 +133,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let has_disc = parts.iter().any(|part| part.class == StrokeClass::Disc);
     let heads = if has_disc { Vec::new() } else { vec![(0..parts.len()).collect()] };
     parts.extend(leaves);
-    parts.extend(scene.axes.iter().map(Part::of_axis));
+    parts.extend(scene.axes.iter().map(Part::from_axis));
     Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None, is_of_pieces: false })
 }
 
@@ -162,7 +162,7 @@ fn rays(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
     };
     is_rayed.then(|| {
         let mut parts: Vec<Part> = (0..HEAD.rays).map(ray).collect();
-        parts.push(Part::of_face(disc, StrokeClass::Disc, None));
+        parts.push(Part::from_face(disc, StrokeClass::Disc, None));
         parts
     })
 }
@@ -205,7 +205,7 @@ fn petals(scene: &Scene, members: &[usize], head: &Face, base: DVec2) -> Vec<Par
     let is_petal = |f: &&Face| f.shape.area > least && f.shape.area < most;
     let inner = members.iter().map(|&k| &scene.faces[k]).filter(is_petal);
     let root = |f: &Face| Some(nearest_on_ring(&f.outline, base).0);
-    core::iter::once(Part::of_face(head, StrokeClass::Blade, Some(base)))
-        .chain(inner.map(|f| Part::of_face(f, StrokeClass::Blade, root(f))))
+    core::iter::once(Part::from_face(head, StrokeClass::Blade, Some(base)))
+        .chain(inner.map(|f| Part::from_face(f, StrokeClass::Blade, root(f))))
         .collect()
 }

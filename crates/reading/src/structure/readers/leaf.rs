@@ -71,9 +71,9 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         }
         false => return None,
     };
-    let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
-    parts.extend(scene.marks_of(row).map(|mark| Part::of_run(mark, StrokeClass::Vein)));
-    parts.extend(petioles.iter().map(|(line, _)| Part::of_run(line, StrokeClass::Axis)));
+    let mut parts = vec![Part::from_face(face, StrokeClass::Blade, Some(root))];
+    parts.extend(scene.marks_of(row).map(|mark| Part::from_run(mark, StrokeClass::Vein)));
+    parts.extend(petioles.iter().map(|(line, _)| Part::from_run(line, StrokeClass::Axis)));
     Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood, word: None, is_of_pieces: true })
 }
 

@@ -91,9 +91,9 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     {
         return None;
     }
-    let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
-    parts.extend(scene.marks_of(row).map(|m| Part::of_run(m, StrokeClass::Vein)));
-    parts.extend(scene.lines.iter().map(|l| Part::of_run(l, StrokeClass::Axis)));
+    let mut parts = vec![Part::from_face(face, StrokeClass::Blade, Some(root))];
+    parts.extend(scene.marks_of(row).map(|m| Part::from_run(m, StrokeClass::Vein)));
+    parts.extend(scene.lines.iter().map(|l| Part::from_run(l, StrokeClass::Axis)));
     Some(Proposal {
         kind: Kind::Leaf,
         parts,

@@ -89,10 +89,10 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         if !is_sound {
             return None;
         }
-        parts.push(Part::of_face(face, StrokeClass::Blade, Some(root)));
+        parts.push(Part::from_face(face, StrokeClass::Blade, Some(root)));
     }
-    parts.extend(scene.marks.iter().map(|(_, mark)| Part::of_run(mark, StrokeClass::Vein)));
-    parts.extend(scene.lines.iter().map(|line| Part::of_run(line, StrokeClass::Axis)));
+    parts.extend(scene.marks.iter().map(|(_, mark)| Part::from_run(mark, StrokeClass::Vein)));
+    parts.extend(scene.lines.iter().map(|line| Part::from_run(line, StrokeClass::Axis)));
     let likelihood = LOOSE.likelihood[0];
     Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood, word: None, is_of_pieces: true })
 }
@@ -102,7 +102,7 @@ fn fallen_lenses(scene: &Scene, rows: &[usize]) -> Proposal {
     let leaf = |&row: &usize| {
         let face = &scene.faces[row];
         let root = face.shape.ends.into_iter().min_by(|p, q| p.y.total_cmp(&q.y));
-        Part::of_face(face, StrokeClass::Blade, root)
+        Part::from_face(face, StrokeClass::Blade, root)
     };
     let parts = rows.iter().map(leaf).collect();
     Proposal {

@@ -267,7 +267,7 @@ impl Scene {
         let (mut leaves, mut other) = (Vec::new(), 0.0);
         for face in rows.map(|k| &self.faces[k]) {
             match self.root_of(face).filter(|root| is_leaf_from(face, *root)) {
-                Some(root) => leaves.push(Part::of_face(face, StrokeClass::Blade, Some(root))),
+                Some(root) => leaves.push(Part::from_face(face, StrokeClass::Blade, Some(root))),
                 None => other += face.shape.area,
             }
         }
@@ -356,16 +356,16 @@ pub(crate) fn adjoins(a: &Face, b: &Face) -> bool {
 }
 
 impl Part {
-    pub(crate) fn of_axis(axis: &Axis) -> Self {
+    pub(crate) fn from_axis(axis: &Axis) -> Self {
         let strokes = vec![axis.stroke];
         Self { points: axis.points.clone(), class: StrokeClass::Axis, root: None, strokes }
     }
 
-    pub(crate) fn of_run(run: &Run, class: StrokeClass) -> Self {
+    pub(crate) fn from_run(run: &Run, class: StrokeClass) -> Self {
         Self { points: run.points.clone(), class, root: None, strokes: vec![run.stroke] }
     }
 
-    pub(crate) fn of_face(face: &Face, class: StrokeClass, root: Option<DVec2>) -> Self {
+    pub(crate) fn from_face(face: &Face, class: StrokeClass, root: Option<DVec2>) -> Self {
         let mut points = face.outline.clone();
         points.extend(face.outline.first());
         Self { points, class, root, strokes: face.strokes.clone() }
@@ -452,7 +452,7 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
             .collect();
     found.iter_mut().for_each(|proposal| green_petals_are_leaves(proposal, ink));
     if let Some(ground) = &scene.ground {
-        let part = Part { class: StrokeClass::Ground, ..Part::of_axis(ground) };
+        let part = Part { class: StrokeClass::Ground, ..Part::from_axis(ground) };
         found.iter_mut().for_each(|p| p.parts.push(part.clone()));
     }
     if let Some(pot) = &scene.pot {

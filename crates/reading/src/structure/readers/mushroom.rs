@@ -86,8 +86,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if lines > MUSHROOM.lines * cap.face.shape.perimeter {
         return None;
     }
-    let mut parts = [&cap.face, &stem].map(|face| Part::of_face(face, StrokeClass::Fruit, None)).to_vec();
-    parts.extend(scene.lines.iter().filter(is_ground).map(|line| Part::of_run(line, StrokeClass::Ground)));
+    let mut parts = [&cap.face, &stem].map(|face| Part::from_face(face, StrokeClass::Fruit, None)).to_vec();
+    parts.extend(scene.lines.iter().filter(is_ground).map(|line| Part::from_run(line, StrokeClass::Ground)));
     let likelihood = MUSHROOM.likelihood[usize::from(cap.is_flat)];
     Some(Proposal {
         kind: Kind::Vegetable,

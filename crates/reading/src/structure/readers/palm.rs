@@ -82,7 +82,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         match frond_root(face, &trunk) {
             Some(root) => {
                 ways.push(face.shape.middle - trunk.top);
-                parts.push(Part::of_face(face, StrokeClass::Blade, Some(root)));
+                parts.push(Part::from_face(face, StrokeClass::Blade, Some(root)));
             }
             None => other += face.shape.area,
         }
@@ -101,7 +101,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     parts.extend(trunk.parts);
-    parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
+    parts.extend(scene.marks.iter().map(|(_, run)| Part::from_run(run, StrokeClass::Vein)));
     Some(Proposal {
         kind: Kind::Palm,
         parts,
@@ -124,7 +124,7 @@ fn trunk_of_face(scene: &Scene) -> Option<Trunk> {
     let shape = &scene.faces[face].shape;
     let top = if shape.ends[0].y > shape.ends[1].y { shape.ends[0] } else { shape.ends[1] };
     let half_width = 0.5 * shape.area / shape.length();
-    let part = Part::of_face(&scene.faces[face], StrokeClass::TrunkOutline, None);
+    let part = Part::from_face(&scene.faces[face], StrokeClass::TrunkOutline, None);
     Some(Trunk { top, half_width, parts: vec![part], face: Some(face), sides: Vec::new() })
 }
 
@@ -144,7 +144,7 @@ fn trunk_of_sides(scene: &Scene) -> Option<Trunk> {
     if left.distance(right) > apart || one.distance(other) > apart {
         return None;
     }
-    let parts = [a, b].map(|k| Part { class: StrokeClass::TrunkOutline, ..Part::of_axis(&scene.axes[k]) });
+    let parts = [a, b].map(|k| Part { class: StrokeClass::TrunkOutline, ..Part::from_axis(&scene.axes[k]) });
     let half_width = 0.5 * one.distance(other);
     Some(Trunk { top: one.midpoint(other), half_width, parts: parts.into(), face: None, sides: vec![a, b] })
 }

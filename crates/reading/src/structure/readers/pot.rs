@@ -59,10 +59,10 @@ pub(super) fn find(scene: &Scene) -> Option<(Part, Vec<usize>)> {
         let whole = rim.and_then(|k| scene.union(&[body, &faces[k]]));
         if let (Some(rim), Some(whole)) = (rim, whole.filter(|pot| is_pot(scene, pot))) {
             let rows = if rim < row { vec![rim, row] } else { vec![row, rim] };
-            return Some((Part::of_face(&whole, StrokeClass::Pot, None), rows));
+            return Some((Part::from_face(&whole, StrokeClass::Pot, None), rows));
         }
         if is_pot(scene, body) {
-            return Some((Part::of_face(body, StrokeClass::Pot, None), vec![row]));
+            return Some((Part::from_face(body, StrokeClass::Pot, None), vec![row]));
         }
     }
     None

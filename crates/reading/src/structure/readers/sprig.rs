@@ -60,9 +60,9 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     let mut parts: Vec<Part> =
-        leaves.iter().map(|(face, root)| Part::of_face(face, StrokeClass::Blade, Some(*root))).collect();
-    parts.extend(scene.axes.iter().map(Part::of_axis));
-    parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
+        leaves.iter().map(|(face, root)| Part::from_face(face, StrokeClass::Blade, Some(*root))).collect();
+    parts.extend(scene.axes.iter().map(Part::from_axis));
+    parts.extend(scene.marks.iter().map(|(_, run)| Part::from_run(run, StrokeClass::Vein)));
     Some(Proposal {
         kind: Kind::Stem,
         parts,

@@ -57,13 +57,13 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     for line in scene.lines.iter().filter(|l| !body.strokes.contains(&l.stroke)) {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
         feet.push(nearest(&ends)?);
-        parts.push(Part::of_run(line, StrokeClass::Axis));
+        parts.push(Part::from_run(line, StrokeClass::Axis));
     }
     for face in (0..scene.faces.len()).filter(|k| *k != row).map(|k| &scene.faces[k]) {
         let root = nearest(&face.outline)?;
         // A tuft in one outline has a notch between each two of its leaves.
         feet.extend(core::iter::repeat_n(root, face.shape.notches.len() + 1));
-        parts.push(Part::of_face(face, StrokeClass::Blade, Some(root)));
+        parts.push(Part::from_face(face, StrokeClass::Blade, Some(root)));
     }
     let top = feet.iter().sum::<DVec2>() / feet.len().max(1) as f64;
     let length = body.shape.length();
@@ -71,7 +71,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if feet.len() < TAPROOT.leaves || !is_together || !tapers_from(body, top) {
         return None;
     }
-    parts.insert(0, Part::of_face(body, StrokeClass::Fruit, None));
+    parts.insert(0, Part::from_face(body, StrokeClass::Fruit, None));
     Some(Proposal {
         kind: Kind::Vegetable,
         parts,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
-use growth::Obstacles;
-use plant::{AxisKind, Blade, FlowerId, NodeId, Organ, OrganKind, Plant, Shape};
-use skin::{FoliageStyle, Shoots, SkinSpec};
+use crate::shoots::{FoliageStyle, Shoots};
+use crate::spec::SkinSpec;
+use glam::{DVec2, DVec3};
+use plant::{AxisKind, Blade, FlowerId, Frame, NodeId, Organ, OrganKind, Plant, Shape};
 
 /// Least axes that are thinned in the first level, because of fewer each is seen. In each further level, which is for
 /// half the size, half of this.
@@ -47,9 +47,9 @@ fn leaf_halvings(plant: &Plant, skin: &SkinSpec, places: &Places, level: u32) ->
         if fronds {
             let mut copy = plant.clone();
             widen(&mut copy, f64::from(1_u32 << first), leaflet_level(plant, at));
-            return skin::drawn_triangles(&copy, &style);
+            return crate::drawn_triangles(&copy, &style);
         }
-        skin::drawn_triangles(plant, &style)
+        crate::drawn_triangles(plant, &style)
     };
     let of_all = |each: &[usize], halved: u32| {
         let staying = leaves(plant).enumerate().filter(|(row, _)| places.stays(*row, halved));
@@ -110,7 +110,7 @@ impl Places {
         Self(borne.map(place).collect())
     }
 
-    fn of_leaves(plant: &Plant) -> Self {
+    fn find_leaves(plant: &Plant) -> Self {
         Self::find(plant, leaves(plant).map(|o| (o.bearer, o.key)))
     }
 
@@ -143,22 +143,19 @@ fn larger(plant: &Plant, places: &Places, halvings: u32) -> f64 {
 
 /// Gives leaves of a coarser copy of `plant` that may enter an obstacle their original size, at which they grew next to
 /// it; or a smaller one, where they are drawn too wide even for that. `own`: the skin settings of `plant`.
-pub(crate) fn keep_out(
+pub fn keep_out(
     copy: &mut Plant,
     (skin, own): (&SkinSpec, &SkinSpec),
     plant: &Plant,
     level: u32,
-    obstacles: &Obstacles,
+    is_free: &dyn Fn(&Frame, f64, &[DVec3]) -> bool,
 ) {
-    if obstacles.is_empty() {
-        return;
-    }
-    let places = Places::of_leaves(plant);
+    let places = Places::find_leaves(plant);
     let larger = larger(plant, &places, leaf_halvings(plant, own, &places, level));
-    let drawn = skin::drawn_shapes(copy, skin);
+    let drawn = crate::drawn_shapes(copy, skin);
     for organ in copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
         for smaller in [larger, 4.0, 4.0] {
-            if !obstacles.admit(&organ.frame, organ.scale, &drawn[organ.shape.index()]) {
+            if !is_free(&organ.frame, organ.scale, &drawn[organ.shape.index()]) {
                 organ.scale /= smaller;
             }
         }
@@ -311,7 +308,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
 }
 
 /// [`coarser`] with the painted shoots of another plant, if they fit.
-pub(crate) fn coarser_with(
+pub fn coarser_with(
     plant: &Plant,
     skin: &SkinSpec,
     level: u32,
@@ -343,7 +340,7 @@ pub(crate) fn coarser_with(
     widen_petals(&mut copy, plant, fewer_flowers * fewer_flowers * f64::from(1_u32 << petal_halvings));
     let mut petals = vec![0_usize; plant.flowers.len()];
     let whole_shoots = shoots.as_ref().filter(|_| level > 1);
-    let places = Places::of_leaves(plant);
+    let places = Places::find_leaves(plant);
     let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, skin, &places, level) };
     let mut larger = larger(plant, &places, leaf_halvings);
     if fronds {
@@ -399,7 +396,7 @@ fn cover_as_much(
     is: impl Fn(OrganKind) -> bool,
 ) {
     let covered = |plant: &Plant, skin: &SkinSpec| {
-        let areas = skin::drawn_areas(plant, skin);
+        let areas = crate::drawn_areas(plant, skin);
         let leaves = plant.organs.iter().filter(|o| is(o.kind) && o.scale.is_finite());
         let area = |o: &Organ| areas.get(o.shape.index()).copied().unwrap_or(0.0) * o.scale * o.scale;
         leaves.map(area).sum::<f64>()
@@ -413,9 +410,6 @@ fn cover_as_much(
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-    use plant::Frame;
-
     use super::*;
 
     #[test]

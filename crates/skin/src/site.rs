@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 use spec::RangeFault;
 
-use crate::parts::{PART_OF_SOIL, PART_OF_STONE, part_of_organ};
+use crate::labels::{PART_OF_SOIL, PART_OF_STONE, part_of_organ};
 
 /// A pot that a plant stands in.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,36 +3,17 @@
 use std::sync::Arc;
 
 use base::{Report, Run, Stopped};
-use bloom::{BloomError, Limb, OrganPoints, ShapeError};
+use bloom::{Limb, OrganPoints};
 use glam::DVec3;
-use leaf::{LeafPaint, LeafSpec, ScanError, ScanLeaf, ScanSpec};
-use mesh::{Model, Texture, TriMesh};
+use leaf::{ScanError, ScanLeaf, ScanSpec};
+use mesh::{Model, TriMesh};
 use plant::{AxisKind, NodeId, Plant, Shape};
 use serde::Serialize;
 use skin::CloudColours;
 
-use crate::checks::check_organs;
-use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
-use crate::made::MadePlant;
+use crate::error::{LeafError, SeedlingError};
+use crate::look::{LeafLook, LeafyPlant, add_leaf};
 use crate::scanned::{colours_of, painted, sheet_of};
-
-/// Options for making a plant of the organs of a scan.
-#[derive(Clone, Debug)]
-pub struct SeedlingOptions {
-    /// Settings for finding its blades.
-    pub scan: ScanSpec,
-    /// Hand edits and meshes.
-    pub leaf: LeafOptions,
-}
-
-impl Default for SeedlingOptions {
-    fn default() -> Self {
-        let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
-        // Leaves of a seedling are small: half of the grid of a leaf that was scanned by itself.
-        let scan = ScanSpec { rows: 32, columns: 21, ..ScanSpec::default() };
-        Self { scan, leaf: LeafOptions { spec, ..LeafOptions::default() } }
-    }
-}
 
 /// One organ as found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,43 +32,32 @@ pub struct OrganFit {
     pub area_mm2: f64,
 }
 
-/// Reason why organs make no plant.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SeedlingError {
-    /// An organ has too few points.
-    #[error(transparent)]
-    Organ(#[from] BloomError),
-    /// Fault of meshes and edits.
-    #[error(transparent)]
-    Leaf(#[from] LeafError),
-}
-
 /// Step at which surfaces are sampled for comparison with the scan: a tenth of the resolution of a hand-held scanner.
 const STEP_M: f64 = 0.000_25;
 
 /// Makes a plant of the organs of a scan, each with its points, metres, +Y up; the one called `stem` bears the others.
 ///
 /// Organs whose points have colours are painted with them. An organ of too few points for a blade becomes an axis, with
-/// a warning. The error is that of the surface against all points. Cost: n log n.
+/// a warning. Cost: n log n.
 ///
 /// # Errors
 /// [`SeedlingError`].
-pub fn make_seedling(
+pub fn build_seedling(
     name: &str,
     organs: &[OrganPoints],
-    options: &SeedlingOptions,
+    scan: &ScanSpec,
+    look: &LeafLook<'_>,
     run: &Run<'_>,
-) -> Result<(MadePlant, Vec<OrganFit>, ShapeError), SeedlingError> {
-    let mut report = Report::default();
-    let mut plant = Plant { name: name.into(), ..Plant::default() };
+    report: &mut Report,
+) -> Result<(LeafyPlant, Vec<OrganFit>), SeedlingError> {
+    let mut leafy = LeafyPlant::named(name);
     let mut fits = Vec::new();
     let stem = organs.iter().find(|o| o.name == "stem");
-    let (mut bearers, mut textures) = (Vec::new(), Vec::new());
+    let mut bearers = Vec::new();
     if let Some(OrganPoints { name, points, colors }) = stem {
         let limb = bloom::stem(points, run)?;
         let colours = colours_of(points, colors, run);
-        bearers = add_axis(&mut plant, (AxisKind::Stem, 0), None, &limb, colours.as_ref());
+        bearers = add_axis(&mut leafy.plant, (AxisKind::Stem, 0), None, &limb, colours.as_ref());
         fits.push(OrganFit { name: name.clone(), ..OrganFit::from_limb(&limb) });
     }
     for (organ, key) in organs.iter().filter(|o| stem.is_none_or(|s| s.name != o.name)).zip(1_u64..) {
@@ -96,11 +66,11 @@ pub fn make_seedling(
         // It sits where it is nearest to the stem.
         let trunk = stem.map(|s| s.points.as_slice()).unwrap_or_default();
         let joint = bloom::joint(points, trunk).unwrap_or_else(|| lowest(points));
-        let nearest = |n: &&NodeId| plant.nodes.position[n.index()].distance(joint);
+        let nearest = |n: &&NodeId| leafy.plant.nodes.position[n.index()].distance(joint);
         let bearer = bearers.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))).copied();
         let limb = bloom::stalk(points, joint, run)?;
         let foot = limb.line.last().copied().unwrap_or(joint);
-        let scan = ScanSpec { base: Some(foot), ..options.scan };
+        let scan = ScanSpec { base: Some(foot), ..*scan };
         // Single leaves give the same warnings: strays, a missing stalk.
         let found = leaf::fit_scan(&limb.beyond, &scan, run, &mut Report::default());
         let found = match found {
@@ -117,15 +87,10 @@ pub fn make_seedling(
             }
         };
         let colours = colours_of(points, colors, run);
-        let mut grove = Grove { plant: &mut plant, textures: &mut textures, colours, options, run };
+        let mut grove = Grove { leafy: &mut leafy, colours, look: *look, run };
         fits.push(grove.add_organ((name, key), bearer, (limb, points, found))?);
     }
-    let (made, _) = finish(plant, &textures, &options.leaf, run, &mut report)?;
-    let counts: Vec<usize> = organs.iter().map(|o| o.points.len()).collect();
-    let made = made.check(|r| check_organs(&counts, r));
-    let all: Vec<DVec3> = organs.iter().flat_map(|o| o.points.iter().copied()).collect();
-    let error = bloom::compare(&all, &surface_places(&made.model), run)?;
-    Ok((made, fits, error))
+    Ok((leafy, fits))
 }
 
 /// Returns places on a model's surface, to compare a scan with it.
@@ -137,11 +102,10 @@ pub fn surface_places(model: &Model) -> Vec<DVec3> {
 
 /// Plant under construction.
 struct Grove<'a> {
-    plant: &'a mut Plant,
-    textures: &'a mut Vec<Option<Arc<Texture>>>,
+    leafy: &'a mut LeafyPlant,
     /// Colours of the organ that is added.
     colours: Option<CloudColours>,
-    options: &'a SeedlingOptions,
+    look: LeafLook<'a>,
     run: &'a Run<'a>,
 }
 
@@ -153,7 +117,7 @@ impl Grove<'_> {
         bearer: Option<NodeId>,
         (mut limb, points, found): (Limb, &[DVec3], Option<ScanLeaf>),
     ) -> Result<OrganFit, SeedlingError> {
-        let plant = &mut *self.plant;
+        let LeafyPlant { plant, textures } = &mut *self.leafy;
         let at = bearer.map(|b| (plant.nodes.position[b.index()], plant.nodes.radius_m[b.index()]));
         match &found {
             Some(found) => {
@@ -176,8 +140,7 @@ impl Grove<'_> {
                 .copied();
         }
         let Some(found) = found else { return Ok(fit) };
-        let sheet =
-            sheet_of(&found, self.colours.as_ref(), self.textures, self.run).map_err(LeafError::from)?;
+        let sheet = sheet_of(&found, self.colours.as_ref(), textures, self.run).map_err(LeafError::from)?;
         let n = found.columns;
         let mesh = TriMesh {
             positions: sheet.points.iter().map(|p| p.as_vec3().to_array()).collect(),
@@ -187,7 +150,7 @@ impl Grove<'_> {
         fit.blade_mm = 1e3 * geom::polyline_length3(&found.midrib());
         fit.width_mm = 1e3 * found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
         fit.area_mm2 = 1e6 * mesh.area();
-        let paint = painted(&sheet, &self.options.leaf);
+        let paint = painted(&sheet, &self.look);
         if let Some((sheet, frame)) = sheet.framed() {
             let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
             add_leaf(plant, shape, frame, bearer, paint, key);

@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use base::{Run, Seed};
+use base::{Report, Run, Seed};
 use glam::{DMat3, DVec2, DVec3};
 use leaf::{FullMarks, Leaf, LeafPaint, Rays};
 use mesh::{MaterialKind, Model, Texture, TriMesh};
 use plant::{Blade, BladeVein, FlatLeaf, Lift, OrganKind, Plant, Relief, Shape};
-use skin::{LeafColours, Worn};
+use skin::{LeafColours, SkinSpec, Worn};
 
-use crate::leaf_blade::leaf_blade;
-use crate::leaves::{LeafError, LeafOptions};
+use crate::error::LeafError;
+use crate::look::{LeafLook, LeafyPlant};
+use crate::measured::{RayLeafParts, build_ray_leaf};
 
 /// A leaf that other makers' plants bear: a blade of length 1 and its picture, if it has one.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,24 +46,24 @@ impl LeafTemplate {
     ///
     /// # Errors
     /// [`LeafError`] for marks that make no leaf.
-    pub fn of_marks(
+    pub fn from_marks(
         marks: &FullMarks,
-        options: &LeafOptions,
+        look: &LeafLook<'_>,
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<Self, LeafError> {
-        let marks = options.spec.shaped(marks)?;
-        let leaf = Leaf::new(&marks, &options.spec)?;
+        let marks = look.spec.shaped(marks)?;
+        let leaf = Leaf::new(&marks, look.spec)?;
         run.cancel.check()?;
-        let mut blade = leaf_blade(&leaf, &marks, 1.0);
+        let mut blade = leaf::leaf_blade(&leaf, &marks, 1.0);
         blade.outline = thinned(blade.outline);
         let flat = leaf.blade().flat(5);
         let painted = || {
-            let colours = LeafColours::default().wilted(options.spec.wilt);
+            let colours = LeafColours::default().wilted(look.spec.wilt);
             Arc::new(skin::vein_texture(&flat, &colours, 512, seed, run.executor))
         };
-        let veins = options.spec.texture == LeafPaint::Veins;
-        let picture = options.picture.clone().or_else(|| veins.then(painted));
+        let veins = look.spec.texture == LeafPaint::Veins;
+        let picture = look.picture.cloned().or_else(|| veins.then(painted));
         let scale = flat.midrib().last().map_or(1.0, |tip| tip.length()).max(f64::MIN_POSITIVE);
         let texture = picture.map(|p| Arc::new(charted(&p, &blade, |at| flat_uv(&flat, at * scale))));
         Ok(Self { blade, texture })
@@ -72,21 +73,23 @@ impl LeafTemplate {
     ///
     /// # Errors
     /// [`LeafError`] for veins that make no leaf; [`TemplateError`] inside for a blade without an outline.
-    pub fn of_rays(
+    pub fn from_rays(
         rays: &Rays,
-        options: &LeafOptions,
+        look: &LeafLook<'_>,
         run: &Run<'_>,
     ) -> Result<Result<Self, TemplateError>, LeafError> {
-        let mut model = crate::make_ray_leaf("leaf", rays, options, run)?.model;
+        let built = build_ray_leaf("leaf", rays, (look, 0), run, &mut Report::default())?;
+        let RayLeafParts { leafy: LeafyPlant { plant, .. }, rays, .. } = built;
+        let spec = SkinSpec { leaf: look.mesh(), textures: false, variation: 0.0, ..SkinSpec::default() };
+        let mut model = skin::skin(&plant, &spec, run)?;
         // The root is where the veins start together; it may lie anywhere.
-        let rays = options.spec.shaped_rays(rays).map_err(LeafError::from)?;
         let root = rays.rays.iter().find_map(|r| r.points.first()).copied().unwrap_or_default();
         for p in model.parts.iter_mut().flat_map(|p| &mut p.mesh.positions) {
             #[expect(clippy::cast_possible_truncation, reason = "positions are f32 in meshes")]
             let moved = (DVec3::from_array(p.map(f64::from)) - root).to_array().map(|x| x as f32);
             *p = moved;
         }
-        Ok(Self::of_model(&model))
+        Ok(Self::from_model(&model))
     }
 
     /// Makes a template of a model of one leaf: the open edge of its largest surface, laid flat.
@@ -97,7 +100,7 @@ impl LeafTemplate {
     ///
     /// # Errors
     /// [`TemplateError`].
-    pub fn of_model(model: &Model) -> Result<Self, TemplateError> {
+    pub fn from_model(model: &Model) -> Result<Self, TemplateError> {
         let sheets: Vec<_> = model.parts.iter().filter(|p| !p.mesh.triangles.is_empty()).collect();
         if sheets.is_empty() {
             return Err(TemplateError::NoSurface);
@@ -141,7 +144,7 @@ impl LeafTemplate {
     }
 
     /// Makes a template of the largest leaf of a plant, without its picture; `None` if it has no leaf.
-    pub fn of_plant(plant: &Plant) -> Option<Self> {
+    pub fn from_plant(plant: &Plant) -> Option<Self> {
         let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
         let blades = leaves.filter_map(|o| match plant.shapes.get(o.shape.index())? {
             Shape::Blade(b) => Some((b.length() * o.scale, b)),
@@ -506,7 +509,7 @@ mod tests {
 
     #[test]
     fn model_of_a_leaf_becomes_a_blade_of_length_1() {
-        let template = LeafTemplate::of_model(&model(sheet())).unwrap();
+        let template = LeafTemplate::from_model(&model(sheet())).unwrap();
         let blade = &template.blade;
         assert!(blade.outline[0].length() < 1e-6, "{:?}", blade.outline[0]);
         assert!((blade.length() - 1.0).abs() < 1e-12);
@@ -519,11 +522,11 @@ mod tests {
 
     #[test]
     fn what_is_no_leaf_is_told() {
-        assert_eq!(LeafTemplate::of_model(&Model::default()), Err(TemplateError::NoSurface));
+        assert_eq!(LeafTemplate::from_model(&Model::default()), Err(TemplateError::NoSurface));
         let mut solid = TriMesh::default();
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| solid.push(p));
         let [a, b, c, d] = corners;
         solid.triangles = vec![[a, c, b], [a, b, d], [a, d, c], [b, c, d]];
-        assert_eq!(LeafTemplate::of_model(&model(solid)), Err(TemplateError::Closed));
+        assert_eq!(LeafTemplate::from_model(&model(solid)), Err(TemplateError::Closed));
     }
 }

@@ -126,11 +126,23 @@ base::coded!(SurveyError {
     Self::Cancelled(e) => e, Cancelled;
 });
 
-/// Label of a place of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Label {
-    pub(crate) part: u8,
-    pub(crate) axis: i32,
-    pub(crate) organ: i32,
-    pub(crate) order: i32,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_out_of_range_is_refused_by_name() {
+        let bad = SurveySpec { stations: 0, ..SurveySpec::default() };
+        let fault = bad.check().expect_err("no station");
+        assert_eq!(fault.to_string(), "stations must be 1 to 64, not 0");
+        assert!(SurveySpec { noise_m: f64::NAN, ..SurveySpec::default() }.check().is_err());
+        let bad = SurveySpec { path: vec![DVec3::ZERO; 1], ..SurveySpec::default() };
+        assert_eq!(
+            bad.check().expect_err("one point").to_string(),
+            "length of path must be 2 to 256 points, not 1"
+        );
+        let path = vec![DVec3::ZERO, DVec3::new(0.0, f64::NAN, 0.0)];
+        let fault = SurveySpec { path, ..SurveySpec::default() }.check().expect_err("no number").to_string();
+        assert!(fault.starts_with("path[1][1] must be -100,000 to 100,000 m"), "{fault}");
+    }
 }

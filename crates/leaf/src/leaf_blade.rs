@@ -1,7 +1,9 @@
 //! A measured leaf -> the bent blade of another maker's plant.
 
 use glam::DVec3;
-use leaf::{FullMarks, Leaf};
+
+use crate::blade::Leaf;
+use crate::marks::FullMarks;
 
 /// Returns a flat leaf as the blade of another maker's plant: outline, midrib and veins, of length `length_m`.
 ///

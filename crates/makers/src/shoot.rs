@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use leaf::{FullMarks, Leaf, Pose};
 use plant::{AxisKind, NodeId, Plant, SplineBlade};
 
-use crate::leaves::{COARSER, LeafError, LeafOptions, bear, finish, leaf_texture};
-use crate::made::MadePlant;
+use crate::error::LeafError;
+use crate::look::{COARSER, LeafLook, LeafyPlant, bear};
 
 /// A whole shoot of measured leaves (Wang et al. 2011, section 3 and Fig 9).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,28 +36,26 @@ impl Default for ShootSpec {
 ///
 /// # Errors
 /// [`LeafError`].
-pub fn make_shoot(
+pub fn build_shoot(
     name: &str,
     forms: &[FullMarks],
     spec: &ShootSpec,
-    options: &LeafOptions,
-    seed: Seed,
+    (look, seed): (&LeafLook<'_>, Seed),
     run: &Run<'_>,
-) -> Result<MadePlant, LeafError> {
+    report: &mut Report,
+) -> Result<LeafyPlant, LeafError> {
     if forms.is_empty() {
         return Err(LeafError::NoLeaves);
     }
-    let mut report = Report::default();
     let count = spec.leaves.clamp(1, 200);
-    let each = forms.iter().map(|form| options.mesh().triangles(form.rows.len())).max().unwrap_or(0);
+    let each = forms.iter().map(|form| look.mesh().triangles(form.rows.len())).max().unwrap_or(0);
     run.budget.check(Counted::Triangles, each * u64::from(count), COARSER)?;
     let stem = stem(spec, seed)?;
-    let forms: Vec<FullMarks> =
-        forms.iter().map(|form| options.spec.moved(form)).collect::<Result<_, _>>()?;
-    let mut textures = Vec::with_capacity(forms.len());
+    let forms: Vec<FullMarks> = forms.iter().map(|form| look.spec.moved(form)).collect::<Result<_, _>>()?;
+    let mut leafy = LeafyPlant::named(name);
     for form in &forms {
-        let leaf = Leaf::new(form, &options.spec)?;
-        textures.push(leaf_texture(&leaf, options, seed, run));
+        let leaf = Leaf::new(form, look.spec)?;
+        leafy.textures.push(look.texture(&leaf, seed, run));
     }
     let places: Vec<Place> = (0..count as usize).map(|k| Place::new(k, count, spec, &stem, seed)).collect();
     let made = report.stage("structure", run.clock, |_| {
@@ -65,19 +63,16 @@ pub fn make_shoot(
             run.cancel.check()?;
             // Equal shares of the stem for each form.
             let form = (k * forms.len() / count as usize).min(forms.len() - 1);
-            let marks = places[k].leaf(&forms[form], options);
+            let marks = places[k].leaf(&forms[form], look);
             let form = u32::try_from(form).unwrap_or(u32::MAX);
-            Ok(SplineBlade { form, ..Leaf::new(&marks, &options.spec)?.blade() })
+            Ok(SplineBlade { form, ..Leaf::new(&marks, look.spec)?.blade() })
         })
     });
-    let mut plant = Plant { name: name.into(), ..Plant::default() };
-    let nodes = add_stem(&mut plant, &stem, &places, seed);
+    let nodes = add_stem(&mut leafy.plant, &stem, &places, seed);
     for ((k, blade), (place, node)) in made.into_iter().enumerate().zip(places.iter().zip(nodes)) {
-        bear(&mut plant, blade?, node, options.paint(place.tint), seed.child(k as u64).number());
+        bear(&mut leafy.plant, blade?, node, look.paint(place.tint), seed.child(k as u64).number());
     }
-    let (mut made, _) = finish(plant, &textures, options, run, &mut report)?;
-    made.item.plant = Some(made.plant.measure());
-    Ok(made)
+    Ok(leafy)
 }
 
 /// Adds the stem as an axis with a node for each leaf, and returns those nodes.
@@ -158,7 +153,7 @@ impl Place {
     }
 
     /// Returns a leaf's marks turned so that it leaves the stem, scaled, bent and set in its place.
-    fn leaf(&self, form: &FullMarks, options: &LeafOptions) -> FullMarks {
+    fn leaf(&self, form: &FullMarks, look: &LeafLook<'_>) -> FullMarks {
         let root = form.root();
         // The measured leaf's own direction over the ground becomes -Z; a leaf measured upright stays so.
         let line = form.midrib();
@@ -169,7 +164,7 @@ impl Place {
         let lift = DQuat::from_xyzw(ops::sin(0.5 * self.tilt), 0.0, 0.0, ops::cos(0.5 * self.tilt));
         let all = self.turn * lift * straight;
         let placed = form.map(|p| self.origin + all * ((p - root) * self.scale), |t| t * self.scale);
-        let curl = (options.spec.curl + self.curl).clamp(-1.0, 1.0);
-        Pose { curl, ..options.spec.pose() }.apply(&placed)
+        let curl = (look.spec.curl + self.curl).clamp(-1.0, 1.0);
+        Pose { curl, ..look.spec.pose() }.apply(&placed)
     }
 }

@@ -6,8 +6,9 @@ use base::{Draw, Run, Seed, Stream, map_until_cancelled, ops};
 use glam::{DVec2, DVec3};
 use mesh::Model;
 use render::{Camera, Hit, Tracer};
+use skin::Label;
 
-use crate::survey_spec::{Label, SurveyError, SurveySpec};
+use crate::survey_spec::{SurveyError, SurveySpec};
 
 /// Named numbers of the beams.
 struct Beams {
