@@ -7,10 +7,12 @@ use burgeon::{PrintedPlant, SceneEvaluator};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::export::SurfaceAsk;
+
 #[derive(Debug, Default)]
 pub(crate) struct ExportPreview {
-    /// Evaluation with wind, of the document at this revision: another level is not skinned twice.
-    pub(crate) blown: Option<(u64, SceneEvaluator)>,
+    /// Evaluation with other surfaces, of the document at this revision: another level is not skinned twice.
+    pub(crate) dressed: Option<((u64, SurfaceAsk), SceneEvaluator)>,
     pub(crate) models: Vec<Model>,
     pub(crate) pngs: PngCache,
 }

@@ -26,6 +26,7 @@ mod engines;
 mod error;
 mod evaluate;
 mod export;
+mod export_levels;
 mod export_preview;
 mod exported;
 mod files;
@@ -37,6 +38,7 @@ mod record;
 mod scatter;
 mod shaping;
 mod shown;
+mod sizing;
 mod state;
 mod view;
 mod workspace;
@@ -47,6 +49,7 @@ mod tests;
 pub use engines::{EngineAnswer, EngineAsk, EngineSet};
 pub use error::WorkspaceError;
 pub use export::{ExportFormat, ExportRequest, NamedFile, packed};
+pub use export_levels::WrittenFigures;
 pub use export_preview::PrintFigures;
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
@@ -56,6 +59,7 @@ pub use lit::{LightAsk, LightPlace, LightView};
 pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
 pub use scatter::{Ground, Scatter, stand};
 pub use shaping::{Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
+pub use sizing::SizeGoal;
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
     PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,

@@ -77,7 +77,12 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
     maker: pieces.panel,
     stats: named('statsbox', 'div', { class: 'statsbox' }),
     grows: named('grows', 'p', { class: 'grows' }, t('view.empty')),
-    extent: named('extent', 'output', { class: 'extent' }),
+    extent: named('extent', 'button', {
+      type: 'button',
+      class: 'extent',
+      title: t('size.set'),
+      onclick: () => page.openSize(),
+    }),
     model: lookingLine(page),
     modelName: named('looking-name', 'span', {}),
     counts: named('counts', 'span', { class: 'counts' }),

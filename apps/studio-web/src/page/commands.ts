@@ -74,6 +74,7 @@ export interface Page {
   openPreview(): void;
   openLight(): void;
   openWarnings(): void;
+  openSize(): void;
   openPalette(): void;
   openHelp(): void;
   startTour(): void;
@@ -211,6 +212,7 @@ const TABLE = [
   { id: 'place-move', label: 'place.translate', keys: 'G', when: hasView, run: (p) => p.place('translate') },
   { id: 'place-turn', label: 'place.rotate', keys: 'R', when: hasView, run: (p) => p.place('rotate') },
   { id: 'place-size', label: 'place.scale', keys: 'S', when: hasView, run: (p) => p.place('scale') },
+  { id: 'size', label: 'size.set', when: hasView, run: (p) => p.openSize() },
   { id: 'place-x', keys: 'X', when: isMoving, run: (p) => p.bind('x') },
   { id: 'place-z', keys: 'Z', when: isMoving, run: (p) => p.bind('z') },
   ...SHAPE_WORDS.map((word) => ({
