@@ -1,5 +1,6 @@
 /** Joins the pieces of the page: what one of them says, another does. No rule about plants is here. */
 import { buildPage, type Parts } from './page/bars';
+import { toggleNames } from './page/names';
 import { Clipboard } from './drawing/clipboard';
 import { arrange, type CommandId, commandOf } from './page/commands';
 import type { Page } from './page/commands';
@@ -742,6 +743,10 @@ export class App implements Page {
         });
         this.show.press('light', true);
       });
+  }
+
+  toggleNames(): void {
+    toggleNames();
   }
 
   openWarnings(): void {

@@ -69,6 +69,8 @@ export interface Page {
   mean(kind: StrokeClass | null): void;
   toggleStats(): void;
   switchLanguage(): void;
+  /** Hides the names of buttons, or shows them again. */
+  toggleNames(): void;
   openShelf(): void;
   openFilming(): void;
   openPreview(): void;
@@ -425,6 +427,7 @@ const TABLE = [
   })),
   { id: 'language', label: 'menu.language.hint', run: (p) => p.switchLanguage() },
   { id: 'theme', label: 'menu.theme', run: (p) => p.theme.next() },
+  { id: 'names', label: 'act.names', run: (p) => p.toggleNames() },
   { id: 'tour', label: 'tour.again', run: (p) => p.startTour() },
   { id: 'palette', keys: 'Ctrl+K', run: (p) => p.openPalette() },
   { id: 'help', label: 'dialog.help', keys: '?', run: (p) => p.openHelp() },
