@@ -2,7 +2,7 @@
 import { buildPage, type Parts } from './page/bars';
 import { toggleNames } from './page/names';
 import { Clipboard } from './drawing/clipboard';
-import { arrange, type CommandId, commandOf } from './page/commands';
+import { arrange, type CommandId, commandOf, oneBlade } from './page/commands';
 import type { Page } from './page/commands';
 import { Card } from './drawing/correct';
 import { Documents } from './keeping/documents';
@@ -53,6 +53,7 @@ export class App implements Page {
   readonly sheet = new Sheet(this.sheetEvents(), t('sheet.label'));
   private readonly card = new Card({
     run: (command) => this.session.draw(command),
+    oneBlade: () => oneBlade(this),
     wear: () => void this.panels.openMaterials(),
     copy: () => void this.clipboard.copy(),
     duplicate: () => this.clipboard.duplicate(),

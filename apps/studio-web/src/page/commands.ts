@@ -129,6 +129,20 @@ function turn(page: Page, angle_deg: number, across: 1 | -1): void {
   page.session.draw({ 'turn-strokes': [page.sheet.selected, { about, angle_deg, scale: [across, 1] }] });
 }
 
+/** Joins the chosen strokes into the outline of one leaf or petal, as one step. */
+export function oneBlade(p: Page): void {
+  const { plant, drawn } = p.session;
+  const chosen = new Set(p.sheet.selected);
+  // In the order of the drawing: the first keeps its number.
+  const strokes = (drawn?.strokes ?? []).map((s) => s.id).filter((id) => chosen.has(id));
+  if (!plant || strokes.length < 2) return;
+  p.session.together('join', [
+    { sketch: [plant.id, { 'join-strokes': strokes }] },
+    { sketch: [plant.id, { 'set-class': [[strokes[0]!], 'blade'] }] },
+  ]);
+  p.choose([strokes[0]!]);
+}
+
 /** The keys of some arrangements. */
 const ARRANGE_KEYS: Partial<Record<Arrangement, string>> = {
   left: 'Ctrl+←',
@@ -351,6 +365,13 @@ const TABLE = [
     label: 'act.join',
     when: (p) => p.sheet.selected.length > 1,
     run: (p) => p.session.draw({ 'join-strokes': p.sheet.selected }),
+  },
+  {
+    id: 'one-blade',
+    label: 'act.oneblade',
+    keys: 'Shift+J',
+    when: (p) => p.sheet.selected.length > 1,
+    run: (p) => oneBlade(p),
   },
   ...(
     [
