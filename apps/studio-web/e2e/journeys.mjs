@@ -690,7 +690,7 @@ async function oddFile({ page, url, shot }) {
   await shot('odd-file-zh');
 }
 
-/** On a laptop each icon bears its name until it was used, and all of them fit. */
+/** On a laptop each icon bears its name until the person hides names, and all of them fit. */
 async function names({ page, url, shot }) {
   await begin(page, url);
   const seen = (of) => page.locator(`${of} .caption:visible`).count();
@@ -716,11 +716,22 @@ async function names({ page, url, shot }) {
   await page.click('#b-wire');
   await page.click('#b-grid');
   await page.keyboard.press('Escape');
-  await becomes(
-    () => page.locator('#b-wire .caption, #b-grid .caption').count(),
-    0,
-    'names of what was used',
+  assert.equal(
+    await page.locator('#b-wire .caption, #b-grid .caption').count(),
+    2,
+    'names of what was used stay',
   );
+  await page.keyboard.press('?');
+  await page.click('#b-names');
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('.caption').count(), 0, 'hidden names');
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  assert.equal(await page.locator('.caption').count(), 0, 'names stay hidden');
+  await shot('names-hidden');
+  await page.keyboard.press('?');
+  await page.click('#b-names');
+  await page.keyboard.press('Escape');
   await page.click('#b-language');
   await page.waitForFunction(() => document.documentElement.lang === 'zh-Hans');
   await pictures(page);

@@ -39,6 +39,34 @@ function bow(points) {
   return Math.max(...points.map(([x, y]) => Math.abs((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / size));
 }
 
+/** Two halves of an outline are chosen and said to be one leaf: one stroke, one organ, one step. */
+async function oneLeaf({ page, url, shot }) {
+  await begin(page, url);
+  await drawFlower(page);
+  const whole = await count(page, 'strokes');
+  const half = (side) =>
+    Array.from({ length: 15 }, (_, k) => [380 + 40 * side * Math.sin((k * Math.PI) / 14), 420 - 8 * k]);
+  await draw(page, half(1));
+  await draw(page, half(-1));
+  await until(page, 'strokes', ['is', whole + 2], 'two halves');
+  const apart = await settled(page);
+  await page.click('#b-select');
+  const box = await page.locator('.sheet').boundingBox();
+  await page.mouse.click(box.x + 420, box.y + 364);
+  await page.keyboard.down('Shift');
+  await page.mouse.click(box.x + 340, box.y + 364);
+  await page.keyboard.up('Shift');
+  await chosen(page, 2);
+  await shot('one-leaf-card');
+  await page.locator('.card .chip', { hasText: 'One leaf or petal' }).click();
+  await until(page, 'strokes', ['is', whole + 1], 'one outline');
+  await changed(page, apart, 'one leaf');
+  await page.locator('.card .chip[aria-pressed=true]', { hasText: 'petal or leaf' }).waitFor();
+  await shot('one-leaf');
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, apart);
+}
+
 async function lasso({ page, url, shot }) {
   await begin(page, url);
   const strokes = await drawFlower(page);
@@ -388,4 +416,5 @@ export const sheet = [
   ['colours are taken and mean something', colours],
   ['ends of strokes meet what is drawn', meets, CLIPBOARD],
   ['what is drawn is said by key', meant],
+  ['two strokes are one leaf', oneLeaf],
 ];

@@ -1,7 +1,23 @@
 // What is seen is what there is, and each stroke is the sheet's.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { add, begin, count, draw, drawFlower, exported, line, sample, settled, until } from './journeys.mjs';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import {
+  add,
+  begin,
+  BUSH,
+  bush,
+  count,
+  draw,
+  drawFlower,
+  exported,
+  line,
+  sample,
+  settled,
+  until,
+} from './journeys.mjs';
 import { filmed, lookedAt, palette, pixels, unzipped } from './staging.mjs';
 import { answered, eventually, finished, pictures, rested, restingEye } from './waits.mjs';
 
@@ -315,21 +331,138 @@ async function games({ page, url, shot }) {
   const plain = await exported(page, 'glb', 1);
   await page.click('#b-export');
   await page.click('#b-export-games');
-  await page.locator('#b-games-save').waitFor();
+  const told = await toldForGames(page);
   await shot('trust-games');
-  const told = await page
-    .locator('#b-games [data-file]')
-    .evaluateAll((rows) => rows.map((r) => [r.dataset.file, Number(r.dataset.bytes)]));
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-games-save')]);
   assert.equal(download.suggestedFilename(), 'tulip.glb.zip', 'it is called after the species');
   const zip = readFileSync(await download.path());
   assert.equal(told.length, 4, 'three levels and views from all sides');
-  for (const [name, bytes] of told) {
+  for (const [name, bytes, triangles] of told) {
     const file = unzipped(zip, name);
     assert.equal(file.length, bytes, name);
-    assert.equal(file.subarray(0, 4).toString(), 'glTF');
+    assert.equal(trianglesOf(file), triangles, name);
   }
   assert.ok(told[0][1] < 0.3 * plain.bytes.length, `${told[0][1]} of ${plain.bytes.length} bytes`);
+}
+
+/** Waits until an export for games is counted: file, bytes and triangles of each row. */
+async function toldForGames(page) {
+  await page.locator('#b-games-save:enabled').waitFor();
+  return page
+    .locator('#b-games [data-file]')
+    .evaluateAll((rows) =>
+      rows.map((r) => [r.dataset.file, Number(r.dataset.bytes), Number(r.dataset.triangles)]),
+    );
+}
+
+/** How many triangles a binary glTF shows: those of all its meshes. */
+function trianglesOf(glb) {
+  const { meshes, accessors } = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString());
+  const counts = meshes.flatMap(({ primitives }) =>
+    primitives.map(({ indices }) => accessors[indices].count / 3),
+  );
+  return counts.reduce((sum, n) => sum + n, 0);
+}
+
+/** A budget, smaller textures, cards and a program: each is counted before it is saved, and as large as the command's. */
+async function budgets({ page, url, shot, burgeon }) {
+  await bush(page, url);
+  await page.click('#b-export');
+  await page.click('#b-export-games');
+  const [whole] = await toldForGames(page);
+  const set = (field, value) =>
+    page.locator(`#b-games-${field}`).evaluate((input, v) => {
+      input.value = v;
+      input.dispatchEvent(new Event('change', { bubbles: true }));
+    }, String(value));
+  await page.click('#b-games-sizes summary');
+  const most = Math.floor(whole[2] / 3);
+  await set('triangles', most);
+  const [fewer] = await toldForGames(page);
+  assert.ok(fewer[2] <= most && fewer[2] > most / 4, `${fewer[2]} triangles of ${most}`);
+  await page.locator('#b-games .reduced', { hasText: 'level of detail' }).waitFor();
+  await shot('games-budget');
+  // As large as what the command makes of the same plant.
+  const folder = mkdtempSync(join(tmpdir(), 'burgeon-games-'));
+  const [file, out] = ['bush.toml', 'bush.glb'].map((name) => join(folder, name));
+  writeFileSync(file, BUSH);
+  execFileSync(burgeon, [
+    'grow',
+    file,
+    '--quiet',
+    '--pack',
+    'meshopt',
+    '--triangles',
+    String(most),
+    '-o',
+    out,
+  ]);
+  const command = readFileSync(out);
+  assert.equal(trianglesOf(command), fewer[2], 'as many triangles as the command writes');
+  assert.ok(Math.abs(command.length / fewer[1] - 1) < 0.01, `${command.length} and ${fewer[1]} bytes`);
+  // Small textures make small files; cards take fewer triangles than outlines.
+  await set('triangles', '');
+  await set('texture_size', '128');
+  const [small] = await toldForGames(page);
+  assert.ok(small[1] < whole[1] && small[2] === whole[2], `${small} of ${whole}`);
+  await set('foliage', 'cards');
+  const [cards] = await toldForGames(page);
+  assert.ok(cards[2] < whole[2], `${cards[2]} triangles of ${whole[2]}`);
+  // Nothing is as small as that: it is said, and nothing can be saved.
+  await set('megabytes', '0.001');
+  await page.locator('#b-games [role=alert]', { hasText: /has at least [\d.]+ megabytes/ }).waitFor();
+  assert.ok(await page.locator('#b-games-save').isDisabled());
+  await shot('games-too-small');
+  await set('megabytes', '');
+  await page.selectOption('#b-games-for', 'unity');
+  const unity = await toldForGames(page);
+  assert.equal(unity.length, 1, 'levels are nodes of one file');
+  await page.locator('#b-games-set', { hasText: 'Set for Unity' }).waitFor();
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-games-save')]);
+  assert.equal(readFileSync(await download.path()).length, unity[0][1]);
+}
+
+/** A plant is as high, as wide or as thick as is asked beside it; one step takes it back. */
+async function sizes({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await until(page, 'triangles', ['above', 1000], 'a hazel has grown');
+  const plain = await settled(page);
+  const extent = async () => {
+    await rested(page);
+    const text = await page.locator('#b-extent').textContent();
+    return text.match(/[\d.]+/g).map(Number);
+  };
+  const ask = async (goal, value) => {
+    await page.click('#b-extent');
+    const field = page.locator(`#b-sizing [data-size=${goal}]`);
+    await field.fill(String(value));
+    await field.press('Enter');
+    await page.locator('#b-sizing').waitFor({ state: 'detached' });
+    return settled(page);
+  };
+  const before = await extent();
+  await page.click('#b-extent');
+  await page.locator('#b-sizing').waitFor();
+  await shot('sizes');
+  await page.keyboard.press('Escape');
+  const small = await ask('height', 2);
+  assert.notEqual(small, plain, 'a younger tree');
+  const [high] = await extent();
+  assert.ok(high > 1.9 && high < 2.4, `${high} m high, ${before} before`);
+  await ask('width', 8);
+  assert.equal((await extent())[1], 8);
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  // Out of reach: it is said how high and thick they become.
+  await page.click('#b-extent');
+  const girth = page.locator('#b-sizing [data-size=dbh]');
+  await girth.fill('9');
+  await girth.press('Enter');
+  await page.locator('#b-sizing [role=status]', { hasText: 'out of reach' }).waitFor();
+  await shot('sizes-out-of-reach');
+  await page.keyboard.press('Escape');
 }
 
 /** Without a network the page comes from the browser, its picture too. */
@@ -377,6 +510,9 @@ export const trust = [
   ['a film of a composed view', composed],
   ['colours of a photograph', colours],
   ['for games', games],
+  ['for games: budgets', budgets],
+  ['height and width', sizes],
+  ['height and width on a phone', sizes, PHONE],
   ['without a network', offline],
   ['plants beside the panels of a phone', phone, PHONE],
   ['a tap selects', tap, PHONE],

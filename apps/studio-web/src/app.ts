@@ -1,7 +1,8 @@
 /** Joins the pieces of the page: what one of them says, another does. No rule about plants is here. */
 import { buildPage, type Parts } from './page/bars';
+import { toggleNames } from './page/names';
 import { Clipboard } from './drawing/clipboard';
-import { arrange, type CommandId, commandOf } from './page/commands';
+import { arrange, type CommandId, commandOf, oneBlade } from './page/commands';
 import type { Page } from './page/commands';
 import { Card } from './drawing/correct';
 import { Documents } from './keeping/documents';
@@ -34,13 +35,14 @@ import { Theme } from './page/theme';
 import type { Half } from './page/halves';
 import { SHEET_TOOLS } from './shaping/tools';
 import { endTour, firstRun, tour } from './page/tour';
-import { download, note } from './page/ui';
+import { closePopover, download, note, popover } from './page/ui';
+import { sizePanel } from './placing/sizing';
 import { Typing } from './placing/typing';
 import { PlantView } from './view/view';
 import { ViewModes } from './looking/viewmode';
 import { Door, type Mode } from './vr/door';
 import type { Written } from './exporting/exporting';
-import type { GestureRecord, Obstacle, PlantState, SetDown, StrokeClass } from './wire';
+import type { Command, GestureRecord, Obstacle, PlantState, SetDown, SizeGoal, StrokeClass } from './wire';
 import { Writing } from './keeping/writing';
 
 /** The sheet of a plant that is not drawn. */
@@ -51,6 +53,7 @@ export class App implements Page {
   readonly sheet = new Sheet(this.sheetEvents(), t('sheet.label'));
   private readonly card = new Card({
     run: (command) => this.session.draw(command),
+    oneBlade: () => oneBlade(this),
     wear: () => void this.panels.openMaterials(),
     copy: () => void this.clipboard.copy(),
     duplicate: () => this.clipboard.duplicate(),
@@ -743,8 +746,37 @@ export class App implements Page {
       });
   }
 
+  toggleNames(): void {
+    toggleNames();
+  }
+
   openWarnings(): void {
     this.show.openWarnings();
+  }
+
+  /** How high and wide the chosen plants are, and shall be. */
+  openSize(): void {
+    const [extent, plants] = [this.view?.extent(), this.list.chosen];
+    if (!extent || plants.length === 0) return;
+    const panel = sizePanel({
+      now: { height: extent.high, width: extent.wide },
+      grows: plants.every((p) => p.maker === 'tree'),
+      count: plants.length,
+      size: (goal) => this.resize(plants, goal),
+      done: () => closePopover(),
+    });
+    popover(this.show.parts.extent, panel, t('size.set'));
+  }
+
+  /** Gives plants a size, as one step of undo; else says why they cannot have it. */
+  private async resize(plants: readonly PlantState[], goal: SizeGoal): Promise<string | undefined> {
+    try {
+      const request = { kind: 'size', plants: plants.map((p) => p.id), goal } as const;
+      this.session.together('size', await this.session.engine.ask<Command[]>(request));
+      return undefined;
+    } catch (e) {
+      return t('note.refused', { why: (e as Error).message });
+    }
   }
 
   openPalette(): void {

@@ -39,12 +39,16 @@ export const CODES = {
   "foreign-zip": [],
   "full": ["what"],
   "gesture": [],
+  "girth-reach": ["wanted", "least", "most"],
   "graph-edge": ["edge", "node", "last"],
   "graph-node": ["node"],
   "graph-one-sided": [],
   "graph-radii": ["nodes", "radii"],
   "graph-small": ["nodes"],
   "growth-light": ["why"],
+  "height-low": [],
+  "height-obstacles": [],
+  "height-reach": ["wanted", "least", "most"],
   "internal": ["why"],
   "json-ends": [],
   "law": ["why"],
@@ -53,6 +57,8 @@ export const CODES = {
   "leaf-scan": ["why"],
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
+  "least-megabytes": ["least"],
+  "least-triangles": ["least"],
   "lender-without-leaf": ["name"],
   "light-crowded": ["surfaces", "crossings", "most"],
   "light-empty": [],
@@ -81,6 +87,7 @@ export const CODES = {
   "no-clipboard": [],
   "no-drawing": [],
   "no-flowers": ["name"],
+  "no-girth": [],
   "no-leaf-to-lend": [],
   "no-leaves": [],
   "no-light": [],
@@ -683,6 +690,10 @@ export type ExportRequest = {
   engine: 
     | Engine
     | null;
+  /** How leaves are drawn, for formats with textures; null for as each plant has it. */
+  foliage: 
+    | FoliageStyle
+    | null;
   /** The format. */
   format: ExportFormat;
   /** Whether to add a last level, views from all sides in one picture, for glTF. */
@@ -691,6 +702,8 @@ export type ExportRequest = {
   instances: boolean;
   /** Levels of detail, 1 to 4: each has about half of the triangles of the one before. */
   levels: number;
+  /** Most megabytes of its file, 0.001 to 4000: textures become smaller first, then it becomes the first level of detail that fits. */
+  megabytes: number | null;
   /** Whether parts and materials are named after their plant. */
   named: boolean;
   /** Whether all levels go into one file, for glTF (`MSFT_lod`); else each has its own. */
@@ -699,6 +712,10 @@ export type ExportRequest = {
   packed: boolean;
   /** Whether to write joints and an animation that sways, for glTF; each level then has a file of its own. */
   sway: boolean;
+  /** Pixels of a side of the textures of bark, and of the length of those of leaves, 64 to 4096; null for as shown. */
+  texture_size: number | null;
+  /** Most triangles of the finest level, 100 or more: it becomes the first level of detail within them. */
+  triangles: number | null;
   /** The unit of the file. */
   unit: Unit;
   /** The vertical axis of the file. */
@@ -826,6 +843,15 @@ export type FlowerState = {
   /** The spec. */
   spec: Record<string, Json>;
 };
+
+/** Drawing of leaves. */
+export type FoliageStyle =
+  | /** By their outlines. */
+  "outlines"
+  | /** By cards of six corners, with the leaf cut out of their texture. */
+  "cards"
+  | /** By outlines in the finest level, by cards in the next, and by cards of whole shoots in those that are coarser. */
+  "by-level";
 
 /** Placement of a drawing in the front view of its plant. */
 export type Front = {
@@ -2258,6 +2284,21 @@ export type SideWord =
   | /** The bound or less. */
   "at_most";
 
+/** Size that plants shall have in the scene, metres. */
+export type SizeGoal =
+  | /** A height. */
+  {
+    height: number;
+  }
+  | /** The larger of the two extents along the ground. */
+  {
+    width: number;
+  }
+  | /** A diameter at breast height (1.3 m), of trees. */
+  {
+    dbh: number;
+  };
+
 /** Commands that change a sketch. */
 export type SketchCommand =
   | /** Adds moved copies of strokes after the others, with what was said of them. */
@@ -2716,6 +2757,10 @@ export type TreeCommand =
   {
     'remove-obstacle': number;
   }
+  | /** Scales the wood to a height in metres, or leaves it as it grows. */
+  {
+    'set-height': number | null;
+  }
   | /** Sets how the tree is meshed. */
   {
     'set-skin': SkinSpec;
@@ -2828,3 +2873,13 @@ export type Wearer =
   "petal"
   | /** Sepals and bracts. */
   "sepal";
+
+/** Contents of the files of the last export of models. */
+export type WrittenFigures = {
+  /** Number of halvings of the sides of the textures, to keep within the megabytes. */
+  halvings: number;
+  /** Level of detail of the first of them: 0, the finest, unless triangles or megabytes are limited. */
+  level: number;
+  /** Triangles of each level, the finest first, and of the views from all sides; those of copies count each time. */
+  triangles: number[];
+};

@@ -18,7 +18,9 @@ use burgeon::{Refusal, Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use workspace::{Column, EngineAsk, ExportRequest, LightAsk, PenStyle, Workspace, WorkspaceError, packed};
+use workspace::{
+    Column, EngineAsk, ExportRequest, LightAsk, PenStyle, SizeGoal, Workspace, WorkspaceError, packed,
+};
 
 #[cfg(any(feature = "checks", test))]
 pub use crate::checks::*;
@@ -491,6 +493,23 @@ impl StudioSession {
     /// Never, but for our own bugs.
     pub fn printed(&self) -> Result<String, Refused> {
         to_json(&self.0.printed())
+    }
+
+    /// See [`Workspace::size`]: numbers of plants and `SizeGoal` in, a list of `Command` out, all JSON.
+    ///
+    /// # Errors
+    /// When a plant cannot have the size.
+    pub fn size(&mut self, plants: &str, goal: &str) -> Result<String, Refused> {
+        let (plants, goal): (Vec<PlantId>, SizeGoal) = (from_json(plants)?, from_json(goal)?);
+        to_json(&page_run(|run| self.0.size(&plants, goal, run))?)
+    }
+
+    /// See [`Workspace::written`]: `WrittenFigures` as JSON, or null.
+    ///
+    /// # Errors
+    /// Never, but for our own bugs.
+    pub fn written(&self) -> Result<String, Refused> {
+        to_json(&self.0.written())
     }
 
     /// See [`Workspace::preview_export`]: `ExportRequest` in, `ExportView` out, both JSON.

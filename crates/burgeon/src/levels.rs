@@ -234,6 +234,11 @@ pub enum AllowanceError {
     },
 }
 
+base::coded!(AllowanceError {
+    Self::Triangles { least } => "least-triangles" { least },
+    Self::Bytes { least } => "least-megabytes" { least = format!("{:.3}", *least as f64 / 1e6) },
+});
+
 /// Most halvings of the sides of textures for a budget: of 512 pixels, 128 remain.
 const HALVINGS: u32 = 2;
 

@@ -114,13 +114,32 @@ impl ScenePlant<'_> {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct SceneEvaluator {
-    wind: bool,
-    foliage: Option<FoliageStyle>,
+    surface: Surface,
     previewing: bool,
     later: bool,
     plants: base::LiteMap<PlantId, Kept>,
     /// The last number that a model was given.
     revision: u64,
+}
+
+/// Choices of an export for the surfaces of all plants.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Surface {
+    wind: bool,
+    foliage: Option<FoliageStyle>,
+    texture_size: Option<u32>,
+}
+
+impl Surface {
+    /// Returns settings of a surface with these choices.
+    fn on(self, skin: SkinSpec) -> SkinSpec {
+        SkinSpec {
+            wind: self.wind,
+            foliage: self.foliage.unwrap_or(skin.foliage),
+            texture_size: self.texture_size.unwrap_or(skin.texture_size),
+            ..skin
+        }
+    }
 }
 
 /// State kept for one plant.
@@ -146,16 +165,11 @@ struct MadeFrom {
     /// Names of hidden layers.
     hidden: Vec<Arc<str>>,
     worn: Worn,
-    wind: bool,
-    foliage: Option<FoliageStyle>,
+    surface: Surface,
 }
 
 impl MadeFrom {
-    fn from_plant(
-        plant: &DocumentPlant,
-        leaf: Option<LeafTemplate>,
-        (wind, foliage): (bool, Option<FoliageStyle>),
-    ) -> Self {
+    fn from_plant(plant: &DocumentPlant, leaf: Option<LeafTemplate>, surface: Surface) -> Self {
         let settings = plant.settings();
         let grown = matches!(settings.maker, Maker::Tree(_));
         Self {
@@ -167,19 +181,13 @@ impl MadeFrom {
             strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), [s.class, s.shown])).collect(),
             hidden: plant.layers().iter().filter(|l| l.hidden).map(|l| Arc::clone(&l.name)).collect(),
             worn: worn(plant),
-            wind,
-            foliage,
+            surface,
         }
     }
 
     fn tree_options(&self, tree: &TreeSettings) -> TreeOptions {
         TreeOptions {
-            skin: SkinSpec {
-                wind: self.wind,
-                foliage: self.foliage.unwrap_or(tree.skin.foliage),
-                worn: self.worn.clone(),
-                ..tree.skin.clone()
-            },
+            skin: SkinSpec { worn: self.worn.clone(), ..self.surface.on(tree.skin.clone()) },
             height_m: tree.height_m,
             leaf: self.leaf.clone(),
             edits: self.edits.clone(),
@@ -237,12 +245,18 @@ impl Kept {
 impl SceneEvaluator {
     /// Sets whether models have wind columns, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
-        self.wind = wind;
+        self.surface.wind = wind;
     }
 
     /// Sets how the leaves of all plants are drawn, from the next update on. Default: as each plant has it.
     pub fn set_foliage(&mut self, foliage: Option<FoliageStyle>) {
-        self.foliage = foliage;
+        self.surface.foliage = foliage;
+    }
+
+    /// Sets the pixels of a side of the textures of all plants (64 to 4096, see [`SkinSpec::texture_size`]), from the next
+    /// update on. Default: as each plant has it.
+    pub fn set_texture_size(&mut self, size: Option<u32>) {
+        self.surface.texture_size = size;
     }
 
     /// Sets whether updates are previews while somebody shapes: reports of trees and drawings then have no digest,
@@ -346,7 +360,7 @@ impl SceneEvaluator {
             None => None,
         };
         let previewing = self.previewing;
-        let from = MadeFrom::from_plant(plant, leaf, (self.wind, self.foliage));
+        let from = MadeFrom::from_plant(plant, leaf, self.surface);
         let is_it = |k: &Kept| {
             let whole = previewing || !k.made.item.digest.is_empty() || k.made.is_untold();
             k.made.from.as_ref() == Some(&from) && whole
@@ -567,8 +581,7 @@ impl Made {
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
         let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::from_plant(plant) };
-        options.skin.wind = from.wind;
-        options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
+        options.skin = from.surface.on(options.skin);
         let drawing = plant.drawing();
         let item = self.sketch.update(&drawing, &options, from.seed, run)?;
         let mut done = self.sketch.stages_done().to_vec();
@@ -619,8 +632,7 @@ impl Made {
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
         let (input, mut options) = leaf_input(leaf)?;
-        options.skin.wind = from.wind;
-        options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
+        options.skin = from.surface.on(options.skin);
         options.skin.worn.clone_from(&from.worn);
         let made = match &input {
             LeafInput::Marks(marks) => {
@@ -640,8 +652,7 @@ impl Made {
     ) -> Result<Vec<&'static str>, SceneError> {
         let law = flower.law.as_ref().map_or_else(|| flower.spec.own_law(), |l| (**l).clone());
         let mut options = FlowerOptions { edits: from.edits.clone(), ..FlowerOptions::default() };
-        options.skin.wind = from.wind;
-        options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
+        options.skin = from.surface.on(options.skin);
         options.skin.worn.clone_from(&from.worn);
         let make = if self.later { untold_flower } else { make_flower };
         let made = make(&from.name, &flower.spec, (flower.day, &law), &options, from.seed, run)?;

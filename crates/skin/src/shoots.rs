@@ -7,6 +7,8 @@ use base::{Digest, Seed};
 use glam::{DVec2, DVec3};
 use mesh::TriMesh;
 use plant::{Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::blade::BladeChart;
 use crate::needles::Cut;
@@ -17,7 +19,8 @@ use crate::sleeve::{drop_flat, narrow2};
 const WOOD_SEEN: f64 = 0.5;
 
 /// Drawing of leaves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum FoliageStyle {
     /// By their outlines.
     #[default]

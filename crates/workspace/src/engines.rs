@@ -127,6 +127,10 @@ impl EngineAsk {
             impostor: is(self.impostor),
             packed: choice.packing.is_some() && !unpacked,
             instances: is(self.instances),
+            foliage: None,
+            texture_size: None,
+            triangles: None,
+            megabytes: None,
             named: choice.has_names,
             engine: Some(self.engine),
         };

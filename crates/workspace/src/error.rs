@@ -4,7 +4,10 @@ use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, Pr
 use burgeon::formats::{DrawingError, DrawingFormat, Foreign, ModelError, ModelFormat, WriteError};
 use burgeon::light::LightError;
 use burgeon::skin::SolidError;
-use burgeon::{LightSourceError, SceneError, Slip, SplitError, Stopped, TreeError, WrongEngineFile};
+use burgeon::{
+    AllowanceError, HeightError, LightSourceError, SceneError, Slip, SplitError, Stopped, TreeError,
+    WrongEngineFile,
+};
 
 /// Reason why a workspace refused a request; the workspace is unchanged.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +63,25 @@ pub enum WorkspaceError {
     /// A body for a printer is made of one plant.
     #[error("a print is one body: choose one plant, not the whole scene")]
     PrintsOne,
+    /// A number of the request is outside its range.
+    #[error("{field} must be {range}, not {value}")]
+    Range {
+        /// Its name.
+        field: &'static str,
+        /// The number.
+        value: f64,
+        /// What it may be.
+        range: String,
+    },
+    /// The plant cannot be as small as requested.
+    #[error(transparent)]
+    Allowance(#[from] AllowanceError),
+    /// A tree cannot have the size.
+    #[error(transparent)]
+    Height(HeightError),
+    /// Only trees have a diameter at breast height.
+    #[error("only a grown tree has a diameter at breast height; give a height or a width")]
+    NoGirth,
     /// No body for a printer can be made.
     #[error(transparent)]
     Solid(#[from] SolidError),
@@ -170,6 +192,8 @@ burgeon::coded!(WorkspaceError {
     Self::NothingMade => "nothing-made" {},
     Self::Format(format) => "no-such-export" { format },
     Self::NothingToShape => "nothing-to-shape" {},
+    Self::Range { field, value, range } => "field-range" { field, range, value },
+    Self::NoGirth => "no-girth" {},
     Self::PrintsOne => "prints-one" {},
     Self::Solid(why) => "no-print" { why },
     Self::EngineFile(WrongEngineFile { wanted, given }) => "engine-file" { wanted = wanted.join(" / ."), given },
@@ -191,6 +215,8 @@ burgeon::coded!(WorkspaceError {
     Self::Drawing(e) => e, DrawingError;
     Self::Model(e) => e, ModelError;
     Self::Tree(e) => e, TreeError;
+    Self::Allowance(e) => e, AllowanceError;
+    Self::Height(e) => e, HeightError;
     Self::Scene(e) => e, SceneError;
     Self::Split(e) => e, SplitError;
     Self::Photo(e) => e, PhotoError;

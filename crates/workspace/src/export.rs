@@ -7,14 +7,15 @@ use burgeon::formats::{
 };
 use burgeon::mesh::{Copies, Model, Standing};
 use burgeon::plant::Plant;
-use burgeon::skin::{SolidError, SolidSpec};
+use burgeon::skin::{FoliageStyle, SolidError, SolidSpec};
 use burgeon::{
-    Engine, ExportChoice, PrintedPlant, Report, Run, SceneEvaluator, Unit, UpAxis, scene_model, standing,
+    Allowance, Engine, ExportChoice, FileForm, Levels, PrintedPlant, Report, Run, SceneEvaluator, Unit,
+    UpAxis, scene_model, standing,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::export_preview::PrintFigures;
+use crate::export_preview::{PrintFigures, SurfaceAsk, WrittenFigures};
 use crate::{Workspace, WorkspaceError};
 
 /// Most levels of detail of an export.
@@ -63,7 +64,7 @@ impl ExportFormat {
 }
 
 /// Subject and format of an export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExportRequest {
     /// The format.
@@ -88,6 +89,15 @@ pub struct ExportRequest {
     pub packed: bool,
     /// Whether leaves of one form are written once, for glTF (`EXT_mesh_gpu_instancing`); they do not move in the wind.
     pub instances: bool,
+    /// How leaves are drawn, for formats with textures; null for as each plant has it.
+    pub foliage: Option<FoliageStyle>,
+    /// Pixels of a side of the textures of bark, and of the length of those of leaves, 64 to 4096; null for as shown.
+    pub texture_size: Option<u32>,
+    /// Most triangles of the finest level, 100 or more: it becomes the first level of detail within them.
+    pub triangles: Option<u64>,
+    /// Most megabytes of its file, 0.001 to 4000: textures become smaller first, then it becomes the first level of detail
+    /// that fits.
+    pub megabytes: Option<f64>,
     /// Whether parts and materials are named after their plant.
     pub named: bool,
     /// The program that the files are for: [`Engine::Print`] gets one closed body, the others what the settings above
@@ -111,6 +121,10 @@ impl Default for ExportRequest {
             impostor,
             packed: false,
             instances: false,
+            foliage: None,
+            texture_size: None,
+            triangles: None,
+            megabytes: None,
             named: false,
             engine: None,
         }
@@ -118,6 +132,70 @@ impl Default for ExportRequest {
 }
 
 impl ExportRequest {
+    /// Range of [`Self::texture_size`], pixels.
+    pub const TEXTURE_SIZES: (f64, f64) = (64.0, 4096.0);
+
+    /// Checks that its numbers are within their ranges.
+    pub(crate) fn check(&self) -> Result<(), WorkspaceError> {
+        let (least, most) = Allowance::TRIANGLES;
+        let rows = [
+            ("texture_size", self.texture_size.map(f64::from), Self::TEXTURE_SIZES),
+            ("triangles", self.triangles.map(|count| count as f64), (least as f64, most as f64)),
+            ("megabytes", self.megabytes, Allowance::MEGABYTES),
+        ];
+        for (field, value, (least, most)) in rows {
+            if let Some(value) = value.filter(|value| !(least..=most).contains(value)) {
+                return Err(WorkspaceError::Range { field, value, range: format!("{least} to {most}") });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns how large it may be.
+    pub(crate) fn allowance(&self) -> Allowance {
+        Allowance::new(self.triangles, self.megabytes)
+    }
+
+    /// Returns what it asks of the surfaces of all plants: wind columns, how leaves are drawn, the size of textures.
+    pub(crate) fn surface(&self) -> SurfaceAsk {
+        let is_painted = self.format.holds(Room::Textures);
+        (self.blown(), self.foliage.filter(|_| is_painted), self.texture_size.filter(|_| is_painted))
+    }
+
+    /// Returns an evaluator with the surfaces that are wanted, if they are others than those of `scene`.
+    pub(crate) fn dressed(
+        &self,
+        scene: &SceneEvaluator,
+        document: &Document,
+        only: Option<PlantId>,
+    ) -> Option<SceneEvaluator> {
+        let surface = self.surface();
+        if surface == SurfaceAsk::default() {
+            return None;
+        }
+        // The shown meshes stay without wind columns, which would make them half as large again.
+        let mut aside = scene.aside(document.plants().iter().filter(chosen(only)));
+        let (has_wind, foliage, texture_size) = surface;
+        aside.set_wind(has_wind);
+        aside.set_foliage(foliage);
+        aside.set_texture_size(texture_size);
+        Some(aside)
+    }
+
+    /// Returns the form of its files.
+    pub(crate) fn form(&self) -> Result<FileForm, WorkspaceError> {
+        let (format, nodes) = (self.format.model()?, self.nodes());
+        let is_one_file = self.one_file && format.holds(Room::Levels) && !self.sways();
+        Ok(FileForm {
+            format,
+            axes: self.spec(),
+            packing: self.packing(),
+            sways: self.sways(),
+            is_one_file: is_one_file || nodes.is_some(),
+            nodes,
+        })
+    }
+
     /// Whether the written meshes have wind columns.
     pub(crate) fn blown(&self) -> bool {
         let moves = !self.has_copies() && !self.is_print();
@@ -151,7 +229,9 @@ impl ExportRequest {
     /// Whether each level is written as one model of the whole scene.
     pub(crate) fn is_joined(&self) -> bool {
         let one = self.format.holds(Room::Levels) && self.one_file && self.levels > 1;
-        self.sways() || self.ends_far() || one || self.packing().is_some() || self.has_copies()
+        let is_named = self.nodes().is_some();
+        let is_glb = self.sways() || self.ends_far() || one || self.packing().is_some() || self.has_copies();
+        is_glb || is_named || self.allowance().is_any()
     }
 
     /// Returns the program whose file has the levels of one plant as named nodes, with shapes for collisions.
@@ -194,8 +274,11 @@ impl Workspace {
             return Ok(vec![(format!("drawing.{}", format.extension()), out)]);
         }
         if let Some(model) = &self.guest {
+            let triangles = vec![model.triangle_count() as u64];
+            self.written = Some(WrittenFigures { triangles, ..WrittenFigures::default() });
             return written(model, wanted.format.model()?, "plant", &wanted.spec());
         }
+        wanted.check()?;
         self.draft = None;
         let only = if wanted.whole { None } else { Some(self.must()?) };
         if wanted.is_print() {
@@ -204,7 +287,14 @@ impl Workspace {
             self.printed = Some(PrintFigures::from_print(&made));
             return written(&made.model, format, "plant", &wanted.spec());
         }
-        export(&mut self.scene, self.editor.document(), only, wanted, run)
+        let (files, figures) = export(&mut self.scene, self.editor.document(), only, wanted, run)?;
+        self.written = Some(figures);
+        Ok(files)
+    }
+
+    /// Returns figures of the last export of plants as models.
+    pub const fn written(&self) -> Option<&WrittenFigures> {
+        self.written.as_ref()
     }
 
     /// Returns figures of the last body that was made for a printer.
@@ -236,122 +326,40 @@ fn export(
     only: Option<PlantId>,
     wanted: &ExportRequest,
     run: &Run<'_>,
-) -> Result<Vec<NamedFile>, WorkspaceError> {
-    let mut aside;
-    let scene = if wanted.blown() {
-        // The shown meshes stay without wind columns, which would make them half as large again.
-        aside = scene.aside(document.plants().iter().filter(chosen(only)));
-        aside.set_wind(true);
-        &mut aside
-    } else {
-        scene
-    };
+) -> Result<(Vec<NamedFile>, WrittenFigures), WorkspaceError> {
+    let mut aside = wanted.dressed(scene, document, only);
+    let scene = aside.as_mut().unwrap_or(scene);
     let made = made(scene, document, only, run)?;
     if let ExportFormat::Structure(format) = wanted.format {
         let plants = made.iter().map(|p| (p.id(), scene.get(p.id()).and_then(|made| made.plant)));
-        return structure(plants, format.extension(), |plant, out| {
+        let files = structure(plants, format.extension(), |plant, out| {
             burgeon::write_structure(plant, format, &wanted.spec(), out)
-        });
+        })?;
+        return Ok((files, WrittenFigures::default()));
     }
     let (format, spec) = (wanted.format.model()?, wanted.spec());
     let levels = wanted.levels.clamp(1, MOST_LEVELS);
-    if let (Some(engine), [plant]) = (wanted.nodes(), &made[..]) {
-        let levels: Result<Vec<Level>, WorkspaceError> =
-            (0..levels).map(|level| Level::make(scene, &made, (level, wanted), run)).collect();
-        return engine_nodes(scene, (engine, format), plant.id(), &levels?);
-    }
     if wanted.is_joined() {
-        let models: Result<Vec<Joined>, WorkspaceError> = (0..levels)
-            .map(|level| {
-                let at = Level::make(scene, &made, (level, wanted), run)?;
-                Ok(at.joined(document.name(), &made, only.is_some()))
-            })
-            .collect();
-        return joined(models?, wanted, run);
+        let levels = ExportLevels::make((scene, document), &made, (only, wanted), run)?;
+        return Ok((levels.files(wanted)?, levels.figures));
     }
-    let mut files = Vec::new();
+    let (mut files, mut figures) = (Vec::new(), WrittenFigures::default());
     for level in 0..levels {
         let at = Level::make(scene, &made, (level, wanted), run)?;
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
         let standing = at.standing(&made, only.is_some());
+        figures.triangles.push(standing.iter().map(|plant| plant.model.triangle_count() as u64).sum());
         files.extend(scene_files(document.name(), &standing, format, &stem, &spec, &mut PngCache::new())?);
     }
-    Ok(files)
-}
-
-/// Returns the levels of one plant as named nodes of one file, with shapes for collisions.
-pub(crate) fn engine_nodes(
-    scene: &SceneEvaluator,
-    (engine, format): (Engine, ModelFormat),
-    plant: PlantId,
-    levels: &[Level],
-) -> Result<Vec<NamedFile>, WorkspaceError> {
-    let shown = scene.get(plant).and_then(|made| made.plant).ok_or(WorkspaceError::NothingMade)?;
-    let models: Vec<&Model> = levels.iter().filter_map(|level| level.models.first()).collect();
-    let mut out = Vec::new();
-    burgeon::write_engine_glb(engine, shown, &models, &mut PngCache::new(), &mut out)?;
-    gltf_named(out, format, "plant")
-}
-
-/// A level as one model of the whole scene, and what it is without leaves of one form, where these are written once.
-#[derive(Debug)]
-pub(crate) struct Joined {
-    pub(crate) model: Model,
-    pub(crate) copies: Option<(Model, Vec<Copies>)>,
-}
-
-impl Joined {
-    fn level(&self) -> formats::Level<'_> {
-        match &self.copies {
-            Some((model, copies)) => formats::Level { model, copies },
-            None => formats::Level::plain(&self.model),
-        }
-    }
-
-    /// Returns its file as binary glTF.
-    fn glb(&self, wanted: &ExportRequest, cache: &mut PngCache) -> Result<Vec<u8>, WorkspaceError> {
-        let mut out = Vec::new();
-        let gust = burgeon::skin::gust(&self.model);
-        match burgeon::skin::sway(&self.model, gust).filter(|_| wanted.sways()) {
-            Some(rig) => formats::write_glb_rigged(&self.model, &rig, cache, &mut out)?,
-            None => formats::write_glb_levels(&[self.level()], wanted.packing(), cache, &mut out)?,
-        }
-        Ok(out)
-    }
-}
-
-/// Returns levels as glTF, each of one model: in one file or several, with joints, with views from all sides as the
-/// last.
-pub(crate) fn joined(
-    mut models: Vec<Joined>,
-    wanted: &ExportRequest,
-    run: &Run<'_>,
-) -> Result<Vec<NamedFile>, WorkspaceError> {
-    if wanted.ends_far()
-        && let Some(finest) = models.first()
-        && let Some(far) = far(&finest.model, run)?
-    {
-        models.push(Joined { model: far, copies: None });
-    }
-    let format = wanted.format.model()?;
-    let mut cache = PngCache::new();
-    if wanted.one_file && models.len() > 1 && !wanted.sways() {
-        let mut out = Vec::new();
-        let levels: Vec<formats::Level<'_>> = models.iter().map(Joined::level).collect();
-        formats::write_glb_levels(&levels, wanted.packing(), &mut cache, &mut out)?;
-        return gltf_named(out, format, "plant");
-    }
-    let mut files = Vec::new();
-    for (level, model) in models.iter().enumerate() {
-        let out = model.glb(wanted, &mut cache)?;
-        let stem = if models.len() == 1 { "plant".into() } else { format!("plant_LOD{level}") };
-        files.extend(gltf_named(out, format, &stem)?);
-    }
-    Ok(files)
+    Ok((files, figures))
 }
 
 /// Returns a binary glTF in a format of its family, with the names of its files.
-fn gltf_named(glb: Vec<u8>, format: ModelFormat, stem: &str) -> Result<Vec<NamedFile>, WorkspaceError> {
+pub(crate) fn gltf_named(
+    glb: Vec<u8>,
+    format: ModelFormat,
+    stem: &str,
+) -> Result<Vec<NamedFile>, WorkspaceError> {
     Ok(gltf_files(glb, format, stem)?.named(format!("{stem}.{}", format.extension())))
 }
 
@@ -528,4 +536,193 @@ pub(crate) fn written(
     let (cache, report) = (&mut PngCache::new(), &mut Report::default());
     let files = model_files(model, format, stem, spec, cache, report)?;
     Ok(files.named(format!("{stem}.{}", format.extension())))
+}
+
+/// A level as one model of the whole scene, and what it is without leaves of one form, where these are written once.
+#[derive(Clone, Debug)]
+pub(crate) struct Joined {
+    pub(crate) model: Model,
+    pub(crate) copies: Option<(Model, Vec<Copies>)>,
+}
+
+impl Joined {
+    fn level(&self) -> formats::Level<'_> {
+        match &self.copies {
+            Some((model, copies)) => formats::Level { model, copies },
+            None => formats::Level::plain(&self.model),
+        }
+    }
+}
+
+/// Levels of an export: views from all sides, if there are any, are the last.
+#[derive(Clone, Debug)]
+pub(crate) struct ExportLevels {
+    pub(crate) models: Vec<Joined>,
+    /// The only exported plant, for programs that want its shapes for collisions; else an empty one.
+    pub(crate) plant: Plant,
+    pub(crate) figures: WrittenFigures,
+}
+
+impl ExportLevels {
+    /// Makes the levels of `plants`, of which `scene` has the results. `only`: the one that is exported without its place.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Allowance`] where even the coarsest level is too large.
+    pub(crate) fn make(
+        (scene, document): (&SceneEvaluator, &Document),
+        plants: &[&DocumentPlant],
+        (only, wanted): (Option<PlantId>, &ExportRequest),
+        run: &Run<'_>,
+    ) -> Result<Self, WorkspaceError> {
+        let coarser = wanted.levels.clamp(1, MOST_LEVELS) - 1;
+        let models: Result<Vec<Joined>, WorkspaceError> = (0..=wanted.allowance().levels(coarser))
+            .map(|level| {
+                let at = Level::make(scene, plants, (level, wanted), run)?;
+                Ok(at.joined(document.name(), plants, only.is_some()))
+            })
+            .collect();
+        let mut models = models?;
+        let far = match models.first().filter(|_| wanted.ends_far()) {
+            Some(finest) => far(&finest.model, run)?,
+            None => None,
+        };
+        let has_far = far.is_some();
+        models.extend(far.map(|model| {
+            let copies = wanted.has_copies().then(|| (model.clone(), Vec::new()));
+            Joined { model, copies }
+        }));
+        let made = Self::new(scene, plants, models);
+        let mut fitted = if wanted.allowance().is_any() { made.within(wanted, has_far)? } else { made };
+        fitted.figures.triangles =
+            fitted.models.iter().map(|joined| joined.model.triangle_count() as u64).collect();
+        Ok(fitted)
+    }
+
+    /// Takes levels that were made of `plants`.
+    pub(crate) fn new(scene: &SceneEvaluator, plants: &[&DocumentPlant], models: Vec<Joined>) -> Self {
+        let plant = match plants {
+            [only] => scene.get(only.id()).and_then(|made| made.plant).cloned(),
+            _ => None,
+        };
+        Self { models, plant: plant.unwrap_or_default(), figures: WrittenFigures::default() }
+    }
+
+    /// Returns the level of a row alone, if there is one.
+    pub(crate) fn only(mut self, row: usize) -> Option<Self> {
+        if row >= self.models.len() {
+            return None;
+        }
+        self.models = vec![self.models.swap_remove(row)];
+        Some(self)
+    }
+
+    /// Reduces them to the allowed size. `has_far`: views from all sides are the last.
+    fn within(self, wanted: &ExportRequest, has_far: bool) -> Result<Self, WorkspaceError> {
+        let Self { models, plant, .. } = self;
+        let mut levels = Levels::default();
+        for Joined { model, copies } in models {
+            levels.lods.push(model);
+            levels.copies.extend(copies);
+        }
+        let finest = if levels.lods.is_empty() { Model::default() } else { levels.lods.remove(0) };
+        let (form, mut cache) = (wanted.form()?, PngCache::new());
+        let weigh = |model: &Model, levels: &Levels| form.weigh(&plant, &levels.split(model), &mut cache);
+        let coarser = wanted.levels.clamp(1, MOST_LEVELS) - 1;
+        let fitted = levels.within(finest, wanted.allowance(), (coarser, has_far), weigh)??;
+        let figures =
+            WrittenFigures { level: fitted.level, halvings: fitted.halvings, ..WrittenFigures::default() };
+        let mut copies = fitted.levels.copies.into_iter();
+        let kept = std::iter::once(fitted.model).chain(fitted.levels.lods);
+        let models = kept.map(|model| Joined { model, copies: copies.next() }).collect();
+        Ok(Self { models, plant, figures })
+    }
+
+    /// Returns the files: of glTF in one file or several, with joints, as named nodes.
+    pub(crate) fn files(&self, wanted: &ExportRequest) -> Result<Vec<NamedFile>, WorkspaceError> {
+        let (form, mut cache) = (wanted.form()?, PngCache::new());
+        let levels: Vec<formats::Level<'_>> = self.models.iter().map(Joined::level).collect();
+        if form.is_one_file && (levels.len() > 1 || form.nodes.is_some()) {
+            let mut out = Vec::new();
+            form.write_levels(&self.plant, &levels, &mut cache, &mut out)?;
+            return gltf_named(out, form.format, "plant");
+        }
+        let mut files = Vec::new();
+        for (k, level) in levels.iter().enumerate() {
+            let stem = if levels.len() == 1 { "plant".into() } else { format!("plant_LOD{k}") };
+            files.extend(self.file(&form, (level, &stem), &mut cache)?);
+        }
+        Ok(files)
+    }
+
+    fn file(
+        &self,
+        form: &FileForm,
+        (level, stem): (&formats::Level<'_>, &str),
+        cache: &mut PngCache,
+    ) -> Result<Vec<NamedFile>, WorkspaceError> {
+        if !form.format.holds(Room::Levels) {
+            return written(level.model, form.format, stem, &form.axes);
+        }
+        let mut out = Vec::new();
+        form.write_glb(&self.plant, core::slice::from_ref(level), cache, &mut out)?;
+        gltf_named(out, form.format, stem)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use burgeon::Coded;
+
+    use super::*;
+    use crate::{Action, NewMaker, Workspace};
+
+    /// Writes a tulip, and returns its files and what they hold.
+    fn tulip(wanted: &ExportRequest) -> Result<(Vec<NamedFile>, WrittenFigures), WorkspaceError> {
+        let mut s = Workspace::default();
+        s.act(&Action::Add { name: "tulip".into(), maker: NewMaker::Flower("tulip".into()) })?;
+        let files = s.export(wanted, &Run::plain())?;
+        Ok((files, s.written().cloned().unwrap_or_default()))
+    }
+
+    fn code(wanted: &ExportRequest) -> &'static str {
+        tulip(wanted).expect_err("it cannot be").details().code
+    }
+
+    #[test]
+    fn a_budget_takes_a_coarser_level() {
+        let wanted = ExportRequest { levels: 2, packed: true, ..ExportRequest::default() };
+        let (files, whole) = tulip(&wanted).unwrap();
+        assert_eq!((files.len(), whole.triangles.len(), whole.level, whole.halvings), (2, 2, 0, 0));
+        let most = whole.triangles[0] / 3;
+        let (fewer, figures) = tulip(&ExportRequest { triangles: Some(most), ..wanted }).unwrap();
+        assert!(figures.level > 0 && figures.halvings == 0, "{figures:?}");
+        assert!(figures.triangles[0] <= most && figures.triangles[1] < figures.triangles[0], "{figures:?}");
+        assert_eq!(fewer.len(), 2, "as many levels as asked");
+        // A tulip has no textures that could become smaller.
+        let bytes = files[0].1.len() - 1;
+        let megabytes = Some(bytes as f64 / 1e6);
+        let (lighter, figures) = tulip(&ExportRequest { megabytes, ..wanted }).unwrap();
+        assert!(lighter[0].1.len() <= bytes && (figures.level, figures.halvings) == (1, 0), "{figures:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_the_least_that_can() {
+        let plain = ExportRequest::default();
+        assert_eq!(code(&ExportRequest { triangles: Some(100), ..plain }), "least-triangles");
+        assert_eq!(code(&ExportRequest { megabytes: Some(0.001), ..plain }), "least-megabytes");
+        assert_eq!(code(&ExportRequest { megabytes: Some(f64::NAN), ..plain }), "field-range");
+        assert_eq!(code(&ExportRequest { texture_size: Some(10), ..plain }), "field-range");
+    }
+
+    #[test]
+    fn the_preview_shows_the_level_that_is_written() {
+        let mut s = Workspace::default();
+        s.act(&Action::Add { name: "tulip".into(), maker: NewMaker::Flower("tulip".into()) }).unwrap();
+        let wanted = ExportRequest { packed: true, triangles: Some(2000), ..ExportRequest::default() };
+        let view = s.preview_export(&wanted, 0, &Run::plain()).unwrap();
+        let files = s.export(&wanted, &Run::plain()).unwrap();
+        let seen: u64 = view.parts.iter().map(|part| part.triangles).sum();
+        assert_eq!(vec![seen], s.written().unwrap().triangles);
+        assert_eq!(view.file_bytes, files[0].1.len() as u64);
+    }
 }

@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
+use burgeon::Run;
 use burgeon::document::PlantId;
 use burgeon::formats::{ModelFormat, Room};
 use burgeon::mesh::{Material, Model, Texture, TriMesh};
-use burgeon::{Run, scene_model};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::export::{
-    Level, MOST_LEVELS, chosen, engine_nodes, far, joined, made, packed, print, scene_files, written,
-};
+use crate::export::{ExportLevels, Level, MOST_LEVELS, made, packed, print, scene_files, written};
 use crate::export_preview::{ExportPreview, PrintFigures};
 use crate::view::GUEST;
 use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
@@ -79,6 +77,7 @@ impl Workspace {
         run: &Run<'_>,
     ) -> Result<ExportView, WorkspaceError> {
         let (format, spec) = (wanted.format.model()?, wanted.spec());
+        wanted.check()?;
         let mut preview = std::mem::take(&mut self.export_preview).unwrap_or_default();
         preview.models.clear();
         let from_afar = level >= MOST_LEVELS && wanted.ends_far();
@@ -99,33 +98,33 @@ impl Workspace {
             let rows: Vec<_> = only.map(|id| (id, 0)).into_iter().collect();
             return self.counted(preview, (0, bytes), format, &rows);
         }
-        let scene = if wanted.blown() {
-            let now = self.editor.revision();
-            if preview.blown.as_ref().is_none_or(|(then, _)| *then != now) {
-                let mut aside = self.scene.aside(document.plants().iter().filter(chosen(only)));
-                aside.set_wind(true);
-                preview.blown = Some((now, aside));
-            }
-            preview.blown.as_mut().map_or(&mut self.scene, |(_, aside)| aside)
-        } else {
-            preview.blown = None;
-            &mut self.scene
-        };
-        let plants = made(scene, document, only, run)?;
-        let at = Level::make(scene, &plants, (if from_afar { 0 } else { level }, wanted), run)?;
-        if from_afar {
-            let finest = scene_model(document.name(), &at.standing(&plants, only.is_some()));
-            let far = far(&finest, run)?.ok_or(WorkspaceError::NothingMade)?;
-            let bytes = packed(wanted.format, written(&far, format, "plant", &spec)?)?.len();
-            preview.models.push(far);
-            let rows: Vec<_> = only.map(|id| (id, 0)).into_iter().collect();
-            return self.counted(preview, (MOST_LEVELS, bytes), format, &rows);
+        let now = (self.editor.revision(), wanted.surface());
+        if preview.dressed.as_ref().is_none_or(|(then, _)| *then != now) {
+            preview.dressed = wanted.dressed(&self.scene, document, only).map(|aside| (now, aside));
         }
+        let scene = preview.dressed.as_mut().map_or(&mut self.scene, |(_, aside)| aside);
+        let plants = made(scene, document, only, run)?;
         let one = ExportRequest { levels: 1, impostor: false, sway: false, ..*wanted };
-        let files = if let (Some(engine), [plant]) = (one.nodes(), &plants[..]) {
-            engine_nodes(scene, (engine, format), plant.id(), core::slice::from_ref(&at))?
-        } else if one.is_joined() {
-            joined(vec![at.joined(document.name(), &plants, only.is_some())], &one, run)?
+        if from_afar || wanted.allowance().is_any() {
+            let levels = if from_afar { 1 } else { wanted.levels.max(level + 1) };
+            let all = ExportRequest { levels, ..*wanted };
+            let made = ExportLevels::make((scene, document), &plants, (only, &all), run)?;
+            let row = if from_afar { 1 } else { level as usize };
+            let shown = made.only(row).ok_or(WorkspaceError::NothingMade)?;
+            let bytes = packed(wanted.format, shown.files(&one)?)?.len();
+            preview.models.extend(shown.models.into_iter().map(|joined| joined.model));
+            let rows: Vec<_> = only.map(|id| (id, 0)).into_iter().collect();
+            return self.counted(
+                preview,
+                (if from_afar { MOST_LEVELS } else { level }, bytes),
+                format,
+                &rows,
+            );
+        }
+        let at = Level::make(scene, &plants, (level, wanted), run)?;
+        let files = if one.is_joined() {
+            let joined = at.joined(document.name(), &plants, only.is_some());
+            ExportLevels::new(scene, &plants, vec![joined]).files(&one)?
         } else {
             let standing = at.standing(&plants, only.is_some());
             scene_files(document.name(), &standing, format, "plant", &spec, &mut preview.pngs)?

@@ -37,6 +37,7 @@ mod record;
 mod scatter;
 mod shaping;
 mod shown;
+mod sizing;
 mod state;
 mod view;
 mod workspace;
@@ -47,7 +48,7 @@ mod tests;
 pub use engines::{EngineAnswer, EngineAsk, EngineSet};
 pub use error::WorkspaceError;
 pub use export::{ExportFormat, ExportRequest, NamedFile, packed};
-pub use export_preview::PrintFigures;
+pub use export_preview::{PrintFigures, WrittenFigures};
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use held::CarriedPose;
@@ -56,6 +57,7 @@ pub use lit::{LightAsk, LightPlace, LightView};
 pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
 pub use scatter::{Ground, Scatter, stand};
 pub use shaping::{Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
+pub use sizing::SizeGoal;
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
     PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,

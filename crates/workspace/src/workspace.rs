@@ -15,7 +15,7 @@ use burgeon::{Evaluator, ItemReport, LiteMap, Preset, Run, SceneEvaluator, tree_
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::export_preview::{ExportPreview, PrintFigures};
+use crate::export_preview::{ExportPreview, PrintFigures, WrittenFigures};
 use crate::held::Held;
 use crate::kept::Kept;
 use crate::shown::Levels;
@@ -116,6 +116,7 @@ pub struct Workspace {
     pub(crate) export_preview: Option<ExportPreview>,
     /// The last body that was made for a printer.
     pub(crate) printed: Option<PrintFigures>,
+    pub(crate) written: Option<WrittenFigures>,
     /// Outcome of each plant at the last evaluation.
     pub(crate) outcomes: LiteMap<PlantId, Outcome>,
     /// Source of each plant's meshes in the last view: a revision, or a preview.

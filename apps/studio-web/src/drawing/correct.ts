@@ -26,6 +26,8 @@ export interface Selected {
 export interface CardEvents {
   /** Asked of the drawing. */
   run(command: SketchCommand): void;
+  /** The chosen strokes are the outline of one leaf or petal. */
+  oneBlade(): void;
   /** Opens the materials. */
   wear(): void;
   /** To the clipboard. */
@@ -118,7 +120,11 @@ export class Card {
     const acts = el('div', { class: 'chips' }, act('correct.smooth', { 'smooth-strokes': all }));
     if (all.length === 1 && selected.pressed)
       acts.append(act('correct.cut', { 'cut-strokes': [all, selected.pressed] }));
-    if (all.length > 1) acts.append(act('correct.join', { 'join-strokes': all }));
+    if (all.length > 1) {
+      const one = does('correct.oneblade', () => this.events.oneBlade());
+      one.title = t('act.oneblade');
+      acts.append(act('correct.join', { 'join-strokes': all }), one);
+    }
     acts.append(
       this.colour(
         all,

@@ -8,7 +8,15 @@ import {
   ENGINES,
   type ModelFormat,
 } from '../wire';
-import { type ExportOptions, fileOf, isModel, type OptionKey, PLAIN, type Target } from './exporting';
+import {
+  type ExportOptions,
+  fileOf,
+  isModel,
+  type OptionKey,
+  PLAIN,
+  sizesOf,
+  type Target,
+} from './exporting';
 
 export type { Program };
 
@@ -45,7 +53,7 @@ export function saidOf(program: Program, set: readonly EngineSet[]): string {
 }
 
 /** What a person asked for since the program was chosen. */
-type Asked = Partial<Record<OptionKey, number | string | boolean>>;
+type Asked = Partial<Record<OptionKey, number | string | boolean | null>>;
 
 /** What was chosen last, as long as the page is there; the preview of the export holds on to the options. */
 const last: { format: Target; readonly options: ExportOptions; asked: Asked } = {
@@ -122,7 +130,7 @@ export class ForProgram {
     this.pending = this.settle(ask).then(
       ({ request: { format: _, ...options }, set }) => {
         if (turn !== this.turn) return;
-        Object.assign(this.options, options, { whole });
+        Object.assign(this.options, options, sizesOf(this.options), { whole });
         this.said = saidOf(engine, set);
         this.changed();
       },

@@ -4,7 +4,7 @@ import type { Engine } from '../worker/engine';
 import type { EngineAnswer, MakerWord, Opened, PrintFigures } from '../wire';
 import { openExport } from '../exporting/dialogue';
 import { fileOf, isModel, PLAIN, type Target, type ExportOptions } from '../exporting/exporting';
-import { exportForGames } from '../exporting/games';
+import { exportForGames, isZip } from '../exporting/games';
 import { decode, isLink, link } from './share';
 import { isPhoto } from '../drawing/photo';
 import { SAMPLES } from './samples';
@@ -16,8 +16,6 @@ import { dialog, download, el, note } from '../page/ui';
 const MAX_MB = 256;
 const ACCEPT =
   '.burgeon,.svg,.svgz,.excalidraw,.tldr,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
-/** How a zip begins: PK. */
-const ZIP = [0x50, 0x4b] as const;
 
 export interface FilesEvents {
   opened(): void;
@@ -230,7 +228,7 @@ export class Files {
       look: () => this.events.look(),
       games: (whole) => {
         if (this.events.empty()) note(t('note.nothing'), 'bad');
-        else void exportForGames(this.engine, safe(this.events.name()), whole);
+        else exportForGames(this.engine, safe(this.events.name()), whole, () => this.events.look());
       },
       settle: (ask) => this.engine.ask<EngineAnswer>({ kind: 'settle', ask }),
     });
@@ -254,7 +252,7 @@ export class Files {
         const request = { format, ...options };
         const bytes = await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', request });
         // Several files come as a zip.
-        const zipped = bytes[0] === ZIP[0] && bytes[1] === ZIP[1];
+        const zipped = isZip(bytes);
         if (zipped) name = `${stem}.${format}.zip`;
         download(name, bytes, zipped ? 'application/zip' : type);
       }

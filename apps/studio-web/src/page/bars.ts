@@ -1,10 +1,11 @@
 /** The page: its bars, its two sides and what lies over them. Made anew for another language; nothing is decided here. */
 import { type CommandId, commandOf, keyOf, type Page } from './commands';
-import { isLearnt, learn } from './learnt';
+import { nameButton } from './names';
 import { Halves } from './halves';
 import { t, type TextKey } from '../text';
 import { SHEET_TOOLS } from '../shaping/tools';
-import { button, el, icon, type IconName } from './ui';
+import { button, el, icon } from './ui';
+import type { IconName } from './icons';
 
 /** The pieces that know how to show themselves. */
 export interface Pieces {
@@ -77,7 +78,12 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
     maker: pieces.panel,
     stats: named('statsbox', 'div', { class: 'statsbox' }),
     grows: named('grows', 'p', { class: 'grows' }, t('view.empty')),
-    extent: named('extent', 'output', { class: 'extent' }),
+    extent: named('extent', 'button', {
+      type: 'button',
+      class: 'extent',
+      title: t('size.set'),
+      onclick: () => page.openSize(),
+    }),
     model: lookingLine(page),
     modelName: named('looking-name', 'span', {}),
     counts: named('counts', 'span', { class: 'counts' }),
@@ -136,14 +142,9 @@ function iconButton(buttons: Buttons, page: Page, spec: ButtonSpec): HTMLButtonE
   return keepButton(buttons, spec, button(spec.icon, labelOf(spec), act, keyOf(spec.command)));
 }
 
-/** Under the icon its short name, until it was used. */
+/** Under the icon its short name. */
 function captioned(command: ToolCommand, b: HTMLButtonElement): HTMLButtonElement {
-  b.addEventListener('click', () => learn(command));
-  if (!isLearnt(command))
-    b.append(
-      el('span', { class: 'caption', 'data-learn': command, 'aria-hidden': 'true' }, t(`short.${command}`)),
-    );
-  return b;
+  return nameButton(b, t(`short.${command}`));
 }
 
 /** A tool: an icon with its name. */

@@ -69,11 +69,14 @@ export interface Page {
   mean(kind: StrokeClass | null): void;
   toggleStats(): void;
   switchLanguage(): void;
+  /** Hides the names of buttons, or shows them again. */
+  toggleNames(): void;
   openShelf(): void;
   openFilming(): void;
   openPreview(): void;
   openLight(): void;
   openWarnings(): void;
+  openSize(): void;
   openPalette(): void;
   openHelp(): void;
   startTour(): void;
@@ -124,6 +127,20 @@ function turn(page: Page, angle_deg: number, across: 1 | -1): void {
   if (!box) return;
   const about: [number, number] = [(box.left + box.right) / 2, (box.bottom + box.top) / 2];
   page.session.draw({ 'turn-strokes': [page.sheet.selected, { about, angle_deg, scale: [across, 1] }] });
+}
+
+/** Joins the chosen strokes into the outline of one leaf or petal, as one step. */
+export function oneBlade(p: Page): void {
+  const { plant, drawn } = p.session;
+  const chosen = new Set(p.sheet.selected);
+  // In the order of the drawing: the first keeps its number.
+  const strokes = (drawn?.strokes ?? []).map((s) => s.id).filter((id) => chosen.has(id));
+  if (!plant || strokes.length < 2) return;
+  p.session.together('join', [
+    { sketch: [plant.id, { 'join-strokes': strokes }] },
+    { sketch: [plant.id, { 'set-class': [[strokes[0]!], 'blade'] }] },
+  ]);
+  p.choose([strokes[0]!]);
 }
 
 /** The keys of some arrangements. */
@@ -211,6 +228,7 @@ const TABLE = [
   { id: 'place-move', label: 'place.translate', keys: 'G', when: hasView, run: (p) => p.place('translate') },
   { id: 'place-turn', label: 'place.rotate', keys: 'R', when: hasView, run: (p) => p.place('rotate') },
   { id: 'place-size', label: 'place.scale', keys: 'S', when: hasView, run: (p) => p.place('scale') },
+  { id: 'size', label: 'size.set', when: hasView, run: (p) => p.openSize() },
   { id: 'place-x', keys: 'X', when: isMoving, run: (p) => p.bind('x') },
   { id: 'place-z', keys: 'Z', when: isMoving, run: (p) => p.bind('z') },
   ...SHAPE_WORDS.map((word) => ({
@@ -348,6 +366,13 @@ const TABLE = [
     when: (p) => p.sheet.selected.length > 1,
     run: (p) => p.session.draw({ 'join-strokes': p.sheet.selected }),
   },
+  {
+    id: 'one-blade',
+    label: 'act.oneblade',
+    keys: 'Shift+J',
+    when: (p) => p.sheet.selected.length > 1,
+    run: (p) => oneBlade(p),
+  },
   ...(
     [
       ['flip', 0, -1],
@@ -423,6 +448,7 @@ const TABLE = [
   })),
   { id: 'language', label: 'menu.language.hint', run: (p) => p.switchLanguage() },
   { id: 'theme', label: 'menu.theme', run: (p) => p.theme.next() },
+  { id: 'names', label: 'act.names', run: (p) => p.toggleNames() },
   { id: 'tour', label: 'tour.again', run: (p) => p.startTour() },
   { id: 'palette', keys: 'Ctrl+K', run: (p) => p.openPalette() },
   { id: 'help', label: 'dialog.help', keys: '?', run: (p) => p.openHelp() },

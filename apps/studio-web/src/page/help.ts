@@ -1,5 +1,6 @@
 /** The dialog that says how the page is used, with the sheet of keys. */
 import { keySheet } from './commands';
+import { areNamesShown, toggleNames } from './names';
 import { t } from '../text';
 import { tour } from './tour';
 import { dialog, el } from './ui';
@@ -22,5 +23,19 @@ export function openHelp(): void {
     },
     t('tour.again'),
   );
-  const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, again);
+  const sayNames = (): string => t(areNamesShown() ? 'act.names.hide' : 'act.names.show');
+  const names = el(
+    'button',
+    {
+      type: 'button',
+      class: 'link',
+      id: 'b-names',
+      onclick: () => {
+        toggleNames();
+        names.textContent = sayNames();
+      },
+    },
+    sayNames(),
+  );
+  const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, el('p', { class: 'row' }, again, names));
 }

@@ -1,5 +1,4 @@
 /** From a key that was pressed to the command that it means. */
-import { learn } from './learnt';
 import { COMMANDS, type Page, type PageCommand } from './commands';
 
 /** A keyboard event, as far as it matters here. */
@@ -71,7 +70,6 @@ export function listenForKeys(page: Page): void {
     const command = commandFor(page, e);
     if (!command) return;
     e.preventDefault();
-    learn(command.id);
     command.run(page);
   });
 }

@@ -1,6 +1,7 @@
 /** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
 import { EditList } from './edits';
 import { measured } from '../page/measure';
+import { nameButton } from '../page/names';
 import type { Request } from '../worker/protocol';
 import type { Outline } from './staged';
 import type {
@@ -233,8 +234,7 @@ export class Shaping {
       const b = button(icon, t(`shape.${word}`), () => this.take(word), keys);
       b.id = `b-shape-${word}`;
       b.setAttribute('aria-pressed', String(word === this.tool));
-      b.append(el('span', { class: 'caption', 'aria-hidden': 'true' }, t(`vr.tool.${word}`)));
-      bar.append(b);
+      bar.append(nameButton(b, t(`vr.tool.${word}`)));
     }
     this.element.replaceChildren(
       el('div', { class: 'options', role: 'status' }, ...toolOptions(this.tool, this.hands)),

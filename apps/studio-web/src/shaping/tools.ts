@@ -1,6 +1,6 @@
 /** The tools that a hand can hold, on the sheet and in the view, one row each. What they do is the sheet's and the core's. */
 import type { Tool } from '../sheet/sheet';
-import type { IconName } from '../page/ui';
+import type { IconName } from '../page/icons';
 import type { ToolKind } from '../wire';
 
 /** Each with the key that takes it up. */

@@ -10,7 +10,8 @@ import {
   type ShapeTool,
 } from './tools';
 import type { ToolSettings } from './toolsettings';
-import { el, icon, type IconName } from '../page/ui';
+import { el, icon } from '../page/ui';
+import type { IconName } from '../page/icons';
 import type { ShapeAnswer, ShapeCommand } from '../wire';
 
 /** What the strip knows of the hands, and what it has them do. */

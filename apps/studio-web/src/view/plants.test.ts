@@ -30,6 +30,10 @@ const WHOLE: ExportRequest = {
   impostor: false,
   packed: false,
   instances: false,
+  foliage: null,
+  texture_size: null,
+  triangles: null,
+  megabytes: null,
   named: false,
   engine: null,
 };

@@ -3,6 +3,7 @@ import type { Shaping } from '../shaping/shaping';
 import { t, type TextKey, tOf } from '../text';
 import { isBrush, isNumber, rowOf, SHAPE_WORDS } from '../shaping/tools';
 import type { Written } from '../exporting/exporting';
+import type { IconName } from '../page/icons';
 import type { HeadsetEvents } from './events';
 import type { ObstacleKind } from './placing';
 import type { Key } from './wrist';
@@ -49,9 +50,28 @@ const FORMATS = [
 
 type Rows = readonly (readonly Key[])[];
 
+/** Icons of keys that do what a button of the page does. */
+const ICONS: Readonly<Record<string, IconName>> = {
+  undo: 'undo',
+  redo: 'redo',
+  mirror: 'mirror',
+  scale: 'scale',
+  leave: 'close',
+  more: 'more',
+  scene: 'scene',
+  dice: 'dice',
+  grid: 'grid',
+  copy: 'copy',
+  save: 'save',
+  export: 'export',
+  clear: 'bin',
+  'plant.add': 'plus',
+};
+
 const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
   id,
   label: t(`vr.${id}` as TextKey),
+  ...(ICONS[id] && { icon: ICONS[id] }),
   wide,
   on,
   act,
@@ -102,6 +122,7 @@ function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
     (word): Key => ({
       id: word,
       label: t(`vr.tool.${word}` as TextKey),
+      icon: rowOf(word).icon,
       wide: 2,
       on: shaping.word === word,
       act: () => {

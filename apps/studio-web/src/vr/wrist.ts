@@ -1,10 +1,13 @@
 /** A board at the wrist of the hand that does not work: tools, undo, how large one is. Pressed with the other hand. */
 import * as THREE from 'three';
+import { type IconName, pathOf } from '../page/icons';
 import type { Controller } from './controller';
 
 export interface Key {
   readonly id: string;
   readonly label: string;
+  /** An icon before the label, as the page has it. */
+  readonly icon?: IconName;
   /** Columns that it takes of `COLUMNS`. */
   readonly wide: number;
   readonly on?: boolean;
@@ -20,6 +23,8 @@ const PIXELS = { width: 600, row: 84, head: 84, gap: 8 } as const;
 const WIDTH_M = 0.22;
 /** Letters, pixels: of 12 mm where there is room, read at half a metre; of two lines; and where there is no room at all. */
 const LETTERS = { most: 32, lines: 28, least: 16 } as const;
+/** An icon and the room before and after it, pixels; its grid and line, in units of that grid. */
+const ICON = { px: 44, gap: 8, grid: 24, line: 2 } as const;
 /** Where a line may be broken first. */
 const BREAK = ' · ';
 /** Above the back of the hand, leaning towards the eyes. */
@@ -202,8 +207,11 @@ export class Wrist {
         pen.strokeStyle = COLOURS.under;
         pen.stroke();
       }
-      const room = key.swatch ? w - h : w - 12;
-      this.write(pen, key.label, x + room / 2 + 6, y + h / 2, room, key.on ? COLOURS.dark : COLOURS.text);
+      const colour = key.on ? COLOURS.dark : COLOURS.text;
+      const before = key.icon ? ICON.px + ICON.gap : 0;
+      if (key.icon) drawIcon(pen, key.icon, [x + ICON.gap, y + (h - ICON.px) / 2], colour);
+      const room = (key.swatch ? w - h : w - 12) - before;
+      this.write(pen, key.label, x + before + room / 2 + 6, y + h / 2, room, colour);
       if (!key.swatch) continue;
       pen.fillStyle = key.swatch;
       pen.beginPath();
@@ -245,6 +253,23 @@ export class Wrist {
     this.smallest = Math.min(this.smallest, px);
     pen.fillText(text, x, y, room);
   }
+}
+
+/** Draws an icon with its upper left corner at a place. */
+function drawIcon(
+  pen: CanvasRenderingContext2D,
+  name: IconName,
+  [x, y]: [number, number],
+  colour: string,
+): void {
+  pen.save();
+  pen.translate(x, y);
+  pen.scale(ICON.px / ICON.grid, ICON.px / ICON.grid);
+  pen.strokeStyle = colour;
+  pen.lineWidth = ICON.line;
+  pen.lineCap = pen.lineJoin = 'round';
+  pen.stroke(new Path2D(pathOf(name)));
+  pen.restore();
 }
 
 const fontOf = (px: number): string => `600 ${px}px system-ui, sans-serif`;

@@ -16,6 +16,7 @@ import type {
   SceneView,
   ShapeInput,
   ShapeReach,
+  SizeGoal,
   StrokeClass,
   StrokeMode,
   TextureView,
@@ -95,6 +96,10 @@ export type Request =
   | { kind: 'settle'; ask: EngineAsk }
   /** The last body for a printer: `PrintFigures`, or null. */
   | { kind: 'printed' }
+  /** What gives plants a size: a list of `Command`. */
+  | { kind: 'size'; plants: readonly number[]; goal: SizeGoal }
+  /** What the last export of models wrote: `WrittenFigures`, or null. */
+  | { kind: 'written' }
   /** How many bytes an export would write: a number. It is written and thrown away. */
   | { kind: 'weigh'; request: ExportRequest }
   /** What an export would write of one level of detail, to be seen: `SentExport`. */

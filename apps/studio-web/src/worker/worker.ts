@@ -199,6 +199,10 @@ function answer(s: StudioSession, request: Request): unknown {
       return JSON.parse(settleExport(JSON.stringify(request.ask)));
     case 'printed':
       return JSON.parse(s.printed());
+    case 'size':
+      return JSON.parse(s.size(JSON.stringify(request.plants), JSON.stringify(request.goal)));
+    case 'written':
+      return JSON.parse(s.written());
     case 'weigh':
       return s.export(JSON.stringify(request.request)).length;
     case 'look':
@@ -249,6 +253,8 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
   'export',
   'settle',
   'printed',
+  'size',
+  'written',
   'weigh',
   'look',
   'light',

@@ -49,6 +49,19 @@ pub enum HeightError {
     Tree(#[from] TreeError),
 }
 
+base::coded!(HeightError {
+    Self::Reach { wanted_m, least_m, most_m } => "height-reach" {
+        wanted = wanted_m, least = format!("{least_m:.2}"), most = format!("{most_m:.1}")
+    },
+    Self::Girth { wanted_m, least_m, most_m } => "girth-reach" {
+        wanted = wanted_m, least = format!("{least_m:.3}"), most = format!("{most_m:.3}")
+    },
+    Self::Low => "height-low" {},
+    Self::Obstacles => "height-obstacles" {},
+} wraps {
+    Self::Tree(e) => e, TreeError;
+});
+
 /// Grows a tree at an age, without meshes.
 fn grown_at(spec: &TreeSpec, seed: Seed, age: Option<u32>, run: &Run<'_>) -> Result<Grown, TreeError> {
     let aged = TreeSpec { age, ..spec.clone() };

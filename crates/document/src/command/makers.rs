@@ -42,6 +42,8 @@ pub enum TreeCommand {
     RenameObstacle(usize, String),
     /// Removes the obstacle of a row.
     RemoveObstacle(usize),
+    /// Scales the wood to a height in metres, or leaves it as it grows. The height is that of an age: another age ends it.
+    SetHeight(Option<f64>),
     /// Sets how the tree is meshed.
     SetSkin(SkinSpec),
     /// Takes the leaf of another plant, or its own again.
@@ -61,6 +63,7 @@ impl TreeCommand {
             Self::AddObstacle(_) | Self::SetObstacle(..) | Self::RemoveObstacle(_) => "obstacle",
             Self::MoveObstacle(..) | Self::SetDownObstacle(..) => "move-obstacle",
             Self::RenameObstacle(..) => "rename",
+            Self::SetHeight(_) => "height",
             Self::SetSkin(_) => "skin",
             Self::SetLeaf(_) => "leaf-of",
         }
@@ -116,6 +119,7 @@ impl TreeCommand {
                 }
                 tree.obstacles.remove(row);
             }
+            Self::SetHeight(height_m) => tree.height_m = height_m,
             Self::SetSkin(skin) => tree.skin = SkinSpec { seed: tree.skin.seed, ..skin },
             Self::SetLeaf(leaf) => tree.leaf = leaf,
         }

@@ -14,8 +14,8 @@ use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use workspace::{
     Action, DocumentState, EngineAnswer, EngineAsk, ExportRequest, ExportView, GestureRecord, LightAsk,
-    LightView, Opened, PenStyle, PrintFigures, SceneView, ShapeAnswer, ShapeInput, ShapeReach,
-    WorkspaceError,
+    LightView, Opened, PenStyle, PrintFigures, SceneView, ShapeAnswer, ShapeInput, ShapeReach, SizeGoal,
+    WorkspaceError, WrittenFigures,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -83,6 +83,8 @@ fn types() -> String {
     add::<EngineAsk>(&mut all);
     add::<EngineAnswer>(&mut all);
     add::<PrintFigures>(&mut all);
+    add::<WrittenFigures>(&mut all);
+    add::<SizeGoal>(&mut all);
     add::<LightAsk>(&mut all);
     add::<LightView>(&mut all);
     add::<PenStyle>(&mut all);

@@ -48,7 +48,7 @@ impl Areas {
         let widest = MASSES.balls.into_iter().fold(0.0, f64::max);
         let cells = Cells::new(lines, MASSES.along, (widest / size).ceil() + 2.0)?;
         let to_ink = distances(&cells, &drawn(&cells, lines));
-        let all = MASSES.balls.into_iter().map(|ball| Self::of_ball(&cells, lines, &to_ink, ball));
+        let all = MASSES.balls.into_iter().map(|ball| Self::within_ball(&cells, lines, &to_ink, ball));
         all.reduce(|a, b| if b.convex() > a.convex() { b } else { a })
     }
 
@@ -58,7 +58,7 @@ impl Areas {
     }
 
     /// Parts the cells that a ball does not reach from outside.
-    fn of_ball(cells: &Cells, lines: &[&[DVec2]], to_ink: &[f64], ball: f64) -> Self {
+    fn within_ball(cells: &Cells, lines: &[&[DVec2]], to_ink: &[f64], ball: f64) -> Self {
         let whole = largest_pieces(cells, &sealed(cells, to_ink, ball / cells.size));
         let depth = distances(cells, &inverted(&whole));
         let thin = MASSES.thin / cells.size;

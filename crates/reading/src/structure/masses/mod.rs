@@ -117,8 +117,10 @@ pub(crate) fn propose(ink: &Ink) -> Option<Proposal> {
         return None;
     }
     let rest = || masses.iter().filter(|m| !is_head(m));
-    let mut parts: Vec<Part> = stems.iter().map(Part::of_stem).collect();
-    parts.extend(rest().map(|m| if bears(m, &heads) { Part::of_stalk(m) } else { leaf(m, &stems, &masses) }));
+    let mut parts: Vec<Part> = stems.iter().map(Part::from_stem).collect();
+    parts.extend(
+        rest().map(|m| if bears(m, &heads) { Part::from_stalk(m) } else { leaf(m, &stems, &masses) }),
+    );
     for head in &heads {
         parts.extend(Profile::new(head).organs(head));
     }
@@ -178,7 +180,7 @@ fn closed(outline: &[DVec2]) -> Vec<DVec2> {
 }
 
 impl Part {
-    fn of_stem(stem: &Stem) -> Self {
+    fn from_stem(stem: &Stem) -> Self {
         Self {
             points: stem.points.clone(),
             class: StrokeClass::Axis,
@@ -187,7 +189,7 @@ impl Part {
         }
     }
 
-    fn of_stalk(mass: &Mass) -> Self {
+    fn from_stalk(mass: &Mass) -> Self {
         Self {
             points: mass.middle_line.clone(),
             class: StrokeClass::Axis,

@@ -148,7 +148,7 @@ pub(super) fn propose(scene: &Scene, ink: &Ink) -> Option<Proposal> {
     let beside =
         (0..scene.faces.len()).filter(|&k| !members.iter().any(|m| core::ptr::eq(*m, &scene.faces[k])));
     parts.extend(scene.leaves_among(beside, BUD.other)?);
-    parts.extend(scene.axes.iter().map(Part::of_axis));
+    parts.extend(scene.axes.iter().map(Part::from_axis));
     Some(Proposal {
         kind: Kind::Flower,
         parts,
@@ -185,11 +185,11 @@ pub(super) fn painted(scene: &Scene, ink: &Ink) -> Option<Proposal> {
     for face in green.iter().map(|&k| &scene.faces[k]) {
         let root = scene.root_of(face).filter(|root| is_leaf_from(face, *root));
         parts.push(match root {
-            Some(root) => Part::of_face(face, StrokeClass::Blade, Some(root)),
+            Some(root) => Part::from_face(face, StrokeClass::Blade, Some(root)),
             None => stem_in(face, base),
         });
     }
-    parts.extend(scene.axes.iter().map(Part::of_axis));
+    parts.extend(scene.axes.iter().map(Part::from_axis));
     let likelihood = BUD.painted_likelihood;
     Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None, is_of_pieces: true })
 }
