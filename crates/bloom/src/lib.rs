@@ -16,6 +16,7 @@
 //! | `tails` | tails of the distribution of F |
 //! | `clean` | [`clean`]: removal of stray points and the ground |
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
+//! | `ways`, `reeb` | ways along the surface from the foot; bands of equal way, and which branches are leaves |
 //! | `blades` | [`blades`]: one leaf, or several |
 //! | `limb` | [`stem`], [`stalk`]: lines with radii of stems and stalks |
 //! | `law` | [`GrowthLaw`]: fitted, saved, applied to another species |
@@ -63,6 +64,7 @@ mod parts;
 mod petal;
 mod plot;
 mod pose;
+mod reeb;
 mod register;
 mod segment;
 mod species;
@@ -70,6 +72,7 @@ mod tails;
 mod thin;
 mod trial;
 mod wanted;
+mod ways;
 mod whorl;
 
 pub use blades::blades;

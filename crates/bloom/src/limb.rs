@@ -45,7 +45,20 @@ pub fn stem(points: &[DVec3], run: &Run<'_>) -> Result<Limb, BloomError> {
     let organ = single_organ(points, "stem", &SegmentSpec::default(), run)?;
     let bands = Bands::from_organ(&organ);
     let (line, radii) = bands.line(0..bands.bands.len());
+    let (line, radii) = to_ends(line, radii);
     Ok(Limb { line, radii, beyond: Vec::new() })
+}
+
+/// Extends a limb by half a band at both ends, as the centres of its bands lie in their middles.
+fn to_ends(mut line: Vec<DVec3>, mut radii: Vec<f64>) -> (Vec<DVec3>, Vec<f64>) {
+    if let ([a, b, ..], [.., y, z], [thick, .., thin]) = (&line[..], &line[..], &radii[..]) {
+        let (foot, tip, ends) = (*a + 0.5 * (*a - *b), *z + 0.5 * (*z - *y), [*thick, *thin]);
+        line.insert(0, foot);
+        line.push(tip);
+        radii.insert(0, ends[0]);
+        radii.push(ends[1]);
+    }
+    (line, radii)
 }
 
 /// Finds the stalk of a leaf that sits on its bearer at `base`: the thin part from there on. The rest is its blade.

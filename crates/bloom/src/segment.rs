@@ -3,14 +3,14 @@
 //! Distances along the surface from the foot cut the plant into bands; connected pieces of bands make a tree (a
 //! Reeb graph); its branches are organs.
 
-use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-use base::{CancelToken, Cancelled, Run};
-use geom::{KdTree, Step, Voxels};
+use base::{Cancelled, Run};
 use glam::DVec3;
 
 use crate::BloomError;
+use crate::reeb::Tree;
+use crate::ways::Ways;
 
 /// One organ of a scan.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,51 +64,39 @@ impl ScanOrgan {
 /// Settings of the segmentation of a plant into organs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentSpec {
-    /// Upward direction; the foot is the lowest place along it. Default +Y.
+    /// Upward direction; the foot is a low place along it, near the middle of the plant. Default +Y.
     pub up: DVec3,
-    /// Point of attachment of the plant (or the single organ); the lowest point if `None`.
+    /// Point of attachment of the plant (or the single organ); found by `up` if `None`.
     pub foot: Option<DVec3>,
     /// Length of branches, as a share of the longest path, below which they are parts of their bearers, 0 to 1. Default
     /// 0.06.
     pub least_length: f64,
-    /// Share of the points below which branches are parts of their bearers, 0 to 1. Default 0.004.
-    pub least_points: f64,
+    /// Share of the surface below which branches are parts of their bearers, 0 to 1. Default 0.004.
+    pub least_area: f64,
 }
 
 impl Default for SegmentSpec {
     fn default() -> Self {
-        Self { up: DVec3::Y, foot: None, least_length: 0.06, least_points: 0.004 }
+        Self { up: DVec3::Y, foot: None, least_length: 0.06, least_area: 0.004 }
     }
 }
 
-/// Cubes of a plant with their path length from the foot.
-struct Ways {
-    voxels: Voxels,
-    means: Vec<DVec3>,
-    way: Vec<f64>,
-    parent: Vec<usize>,
-}
-
-const NONE: usize = usize::MAX;
-
 /// Segments a plant into stem and leaves. The stem comes first; leaves follow by size, largest first.
 ///
-/// Pieces that are not connected with the foot are bridged over the shortest gap. A stem runs from the foot to the
-/// first fork, and on through forks as long as it stays thin and upright. Guaranteed: every finite point belongs to
-/// exactly one organ. Not guaranteed: that touching organs are separated. Cost: n log n.
+/// Pieces that are not connected with the foot are bridged over the shortest gap. A stem runs from the foot through forks
+/// as long as what lies beyond stands around it; what stands on one side is a leaf, with its leaflets. Guaranteed: every
+/// finite point belongs to exactly one organ; a cloud that is turned about `up`, moved or shuffled has the same organs, but
+/// for points at the seams. Not guaranteed: that all touching organs are separated. Cost: n log n.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points; cancelled.
 pub fn organs(points: &[DVec3], spec: &SegmentSpec, run: &Run<'_>) -> Result<Vec<ScanOrgan>, BloomError> {
-    let ways = ways(points, spec, run.cancel)?;
-    let tree = Tree::new(&ways, run.cancel)?;
+    let ways = Ways::new(points, spec, run.cancel)?;
+    let tree = Tree::new(&ways, spec, run.cancel)?;
     let labels = tree.labels(&ways, spec);
     let count = labels.iter().copied().max().unwrap_or(0) + 1;
     let one = |label| run.cancel.check().map(|()| cut(points, &ways, |c| labels[c] == label));
     let mut out: Vec<ScanOrgan> = (0..count).map(one).collect::<Result<_, Cancelled>>()?;
-    if out.len() > 1 {
-        base::sort_by_key(&mut out[1..], |o| core::cmp::Reverse(o.points.len()));
-    }
     for (i, organ) in out.iter_mut().enumerate() {
         organ.name = if i == 0 { "stem".into() } else { format!("leaf-{i}") };
     }
@@ -142,237 +130,10 @@ pub fn single_organ(
     spec: &SegmentSpec,
     run: &Run<'_>,
 ) -> Result<ScanOrgan, BloomError> {
-    let ways = ways(points, spec, run.cancel)?;
+    let ways = Ways::new(points, spec, run.cancel)?;
     let mut organ = cut(points, &ways, |_| true);
     organ.name = name.to_owned();
     Ok(organ)
-}
-
-fn ways(points: &[DVec3], spec: &SegmentSpec, cancel: &CancelToken) -> Result<Ways, BloomError> {
-    let is = points.iter().filter(|p| p.is_finite()).count();
-    if is < 16 {
-        return Err(BloomError::TooFew { what: "the scan".into(), is, wanted: 16 });
-    }
-    let voxels = Voxels::new(points, 3.0);
-    cancel.check()?;
-    let means = voxels.means(points);
-    let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
-    let height = |c: &usize| match spec.foot {
-        Some(foot) => means[*c].distance(foot),
-        None => means[*c].dot(up),
-    };
-    let foot = (0..means.len()).min_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
-    let mut ways =
-        Ways { way: vec![f64::INFINITY; means.len()], parent: vec![NONE; means.len()], voxels, means };
-    ways.way[foot] = 0.0;
-    let mut front = vec![foot];
-    // A scan in more pieces than this is dust, which belongs to the nearest piece.
-    for _ in 0..200 {
-        ways.spread(&front, cancel)?;
-        let (reached, lost): (Vec<usize>, Vec<usize>) =
-            (0..ways.way.len()).partition(|&c| ways.way[c].is_finite());
-        let places: Vec<DVec3> = reached.iter().map(|&c| ways.means[c]).collect();
-        let grid = KdTree::new(&places);
-        let gap = |c: usize| {
-            let k = grid.nearest(ways.means[c], f64::INFINITY)?;
-            Some((ways.means[c].distance(places[k]), c, reached[k]))
-        };
-        let bridge = lost.into_iter().filter_map(gap).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((length, to, from)) = bridge else { break };
-        ways.way[to] = ways.way[from] + length;
-        ways.parent[to] = from;
-        front = vec![to];
-    }
-    for c in 0..ways.way.len() {
-        if !ways.way[c].is_finite() {
-            ways.way[c] = 0.0;
-        }
-    }
-    Ok(ways)
-}
-
-impl Ways {
-    /// Extends paths from cubes whose path length is known (Dijkstra 1959).
-    fn spread(&mut self, from: &[usize], cancel: &CancelToken) -> Result<(), Cancelled> {
-        let mut heap: BinaryHeap<Step<_>> = from.iter().map(|&c| Step(self.way[c], c)).collect();
-        let mut near = Vec::new();
-        while let Some(Step(way, c)) = heap.pop() {
-            cancel.check()?;
-            if way > self.way[c] {
-                continue;
-            }
-            near.clear();
-            self.voxels.near(c, 2, |k| near.push(k));
-            for &k in &near {
-                let next = way + self.means[c].distance(self.means[k]);
-                if k != c && next < self.way[k] {
-                    self.way[k] = next;
-                    self.parent[k] = c;
-                    heap.push(Step(next, k));
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Connected pieces of bands.
-struct Tree {
-    /// The piece of each cube.
-    piece: Vec<usize>,
-    /// The piece below each piece; `NONE` for the first.
-    below: Vec<usize>,
-    above: Vec<Vec<usize>>,
-    /// Mean position, and root mean square distance from it.
-    middle: Vec<DVec3>,
-    spread: Vec<f64>,
-    /// For the piece and all above it: number of points, and the longest path from the piece.
-    points: Vec<usize>,
-    reach: Vec<f64>,
-    band: f64,
-}
-
-impl Tree {
-    fn new(ways: &Ways, cancel: &CancelToken) -> Result<Self, Cancelled> {
-        let n = ways.way.len();
-        let longest = ways.way.iter().copied().fold(0.0, f64::max);
-        let band = (3.0 * ways.voxels.cell()).max(longest / 400.0).max(1e-12);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 400 bands")]
-        let band_of = |c: usize| (ways.way[c] / band) as usize;
-        let mut order: Vec<usize> = (0..n).collect();
-        base::sort_by(&mut order, |&a, &b| band_of(a).cmp(&band_of(b)).then(a.cmp(&b)));
-        let mut tree = Self {
-            piece: vec![NONE; n],
-            below: vec![],
-            above: vec![],
-            middle: vec![],
-            spread: vec![],
-            points: vec![],
-            reach: vec![],
-            band,
-        };
-        let mut stack = Vec::new();
-        let mut members = Vec::new();
-        for &first in &order {
-            if tree.piece[first] != NONE {
-                continue;
-            }
-            cancel.check()?;
-            let mark = tree.below.len();
-            members.clear();
-            stack.push(first);
-            tree.piece[first] = mark;
-            while let Some(c) = stack.pop() {
-                members.push(c);
-                ways.voxels.near(c, 2, |k| {
-                    if tree.piece[k] == NONE && band_of(k) == band_of(first) {
-                        tree.piece[k] = mark;
-                        stack.push(k);
-                    }
-                });
-            }
-            // The cube with the shortest path came from the piece below.
-            let lowest = members.iter().copied().min_by(|&a, &b| ways.way[a].total_cmp(&ways.way[b]));
-            let mut from = lowest.map_or(NONE, |c| ways.parent[c]);
-            while from != NONE && tree.piece[from] == mark {
-                from = ways.parent[from];
-            }
-            let below = if from == NONE { NONE } else { tree.piece[from] };
-            tree.below.push(if below == NONE || below >= mark { NONE } else { below });
-            tree.above.push(vec![]);
-            let count: usize = members.iter().map(|&c| ways.voxels.rows(c).len()).sum();
-            let mean = members.iter().map(|&c| ways.means[c]).sum::<DVec3>() / members.len() as f64;
-            let square: f64 = members.iter().map(|&c| ways.means[c].distance_squared(mean)).sum();
-            tree.middle.push(mean);
-            tree.spread.push((square / members.len() as f64).sqrt());
-            tree.points.push(count);
-            tree.reach.push(band);
-        }
-        for p in (1..tree.below.len()).rev() {
-            let below = tree.below[p];
-            if below != NONE {
-                tree.above[below].push(p);
-                tree.points[below] += tree.points[p];
-                tree.reach[below] = tree.reach[below].max(tree.reach[p] + band);
-            }
-        }
-        Ok(tree)
-    }
-
-    /// Returns a label per cube: 0 for the stem, 1 and on for each organ.
-    fn labels(&self, ways: &Ways, spec: &SegmentSpec) -> Vec<usize> {
-        let total: usize = self.points.first().copied().unwrap_or(0);
-        let longest = self.reach.first().copied().unwrap_or(0.0);
-        let is_branch = |p: usize| {
-            self.reach[p] >= spec.least_length * longest
-                && self.points[p] as f64 >= spec.least_points * total as f64
-        };
-        let branches =
-            |p: usize| self.above[p].iter().copied().filter(|&a| is_branch(a)).collect::<Vec<usize>>();
-        let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
-        let mut label = vec![NONE; self.below.len()];
-        let mut next = 1;
-        let mut stem_width: Option<f64> = None;
-        let mut first_fork: Option<DVec3> = None;
-        let mut work = if self.below.is_empty() { vec![] } else { vec![0] };
-        while let Some(start) = work.pop() {
-            // Along the stem to the next fork.
-            let mut chain = vec![start];
-            let mut fork = branches(start);
-            while let [only] = fork[..] {
-                chain.push(only);
-                fork = branches(only);
-            }
-            let mut widths: Vec<f64> = chain.iter().map(|&p| self.spread[p]).collect();
-            base::sort_numbers(&mut widths);
-            stem_width = stem_width.or(Some(widths[widths.len() / 2]));
-            chain.iter().for_each(|&p| label[p] = 0);
-            for b in fork {
-                let place = first_fork.get_or_insert(self.middle[chain[chain.len() - 1]]);
-                if self.is_internode(b, &branches, stem_width.unwrap_or(0.0), up, *place) {
-                    work.push(b);
-                } else {
-                    label[b] = next;
-                    next += 1;
-                }
-            }
-        }
-        if next == 1 {
-            // No fork: a single organ or a bare stem.
-            return vec![0; ways.way.len()];
-        }
-        for p in 0..label.len() {
-            if label[p] == NONE {
-                label[p] = if self.below[p] == NONE { 0 } else { label[self.below[p]] };
-            }
-        }
-        self.piece.iter().map(|&p| if p == NONE { 0 } else { label[p] }).collect()
-    }
-
-    /// Whether the piece is short, or thin and upright and at least three bands long; and it forks again.
-    fn is_internode(
-        &self,
-        start: usize,
-        branches: &dyn Fn(usize) -> Vec<usize>,
-        width: f64,
-        up: DVec3,
-        node: DVec3,
-    ) -> bool {
-        let mut chain = vec![start];
-        let mut fork = branches(start);
-        while let [only] = fork[..] {
-            chain.push(only);
-            fork = branches(only);
-        }
-        // Leaves that part slightly later than the others part at the same node.
-        let longest = self.reach.first().copied().unwrap_or(0.0);
-        let last = chain[chain.len() - 1];
-        let short = self.middle[last].distance(node) <= 0.1 * longest;
-        let way = (self.middle[last] - self.middle[start]).normalize_or_zero();
-        let mean = chain.iter().map(|&p| self.spread[p]).sum::<f64>() / chain.len() as f64;
-        let thin = chain.len() >= 3 && way.dot(up) > 0.6 && mean < 1.6 * width.max(0.5 * self.band);
-        fork.len() > 1 && (short || thin)
-    }
 }
 
 fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> ScanOrgan {
@@ -465,7 +226,7 @@ fn match_turned(a: &[ScanOrgan], b: &[ScanOrgan], up: DVec3, angle: f64) -> (f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::{Draw, Seed, ops};
+    use base::{CancelToken, Draw, Seed, ops};
 
     /// Makes a stem of 30 mm with three leaves at azimuths 0, 120 and 240 degrees; also returns the numbers of points.
     fn seedling(lengths: [f64; 3]) -> (Vec<DVec3>, Vec<usize>) {
