@@ -178,7 +178,7 @@ pub(crate) fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
 /// Returns the distance of each cell from the nearest of the given cells, in cells: exact, in linear time (Felzenszwalb
 /// and Huttenlocher 2012, section 3). If there are none, it is greater than the picture.
 pub(crate) fn distances(cells: &Cells, from: &[bool]) -> Vec<f64> {
-    let far = ((cells.wide + cells.tall) as f64).powi(2);
+    let far = square((cells.wide + cells.tall) as f64);
     let mut squares: Vec<f64> = from.iter().map(|f| if *f { 0.0 } else { far }).collect();
     for x in 0..cells.wide {
         let column: Vec<f64> = (0..cells.tall).map(|y| squares[y * cells.wide + x]).collect();
@@ -190,6 +190,10 @@ pub(crate) fn distances(cells: &Cells, from: &[bool]) -> Vec<f64> {
         row.copy_from_slice(&lowest_parabola(row));
     }
     squares.into_iter().map(f64::sqrt).collect()
+}
+
+pub(crate) fn square(x: f64) -> f64 {
+    x * x
 }
 
 /// Returns the least of `heights[i] + (x - i)^2` over all `i`, for each place `x`.
@@ -209,7 +213,7 @@ fn lowest_parabola(heights: &[f64]) -> Vec<f64> {
         lowest.push((next, from));
     }
     let mut at = 0;
-    let height = |x: usize, of: usize| heights[of] + (x as f64 - of as f64).powi(2);
+    let height = |x: usize, of: usize| heights[of] + square(x as f64 - of as f64);
     (0..heights.len())
         .map(|x| {
             while lowest.get(at + 1).is_some_and(|next| next.1 < x as f64) {

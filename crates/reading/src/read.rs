@@ -365,22 +365,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         (reading, said, kind, sure) = (composed, Report::default(), proposal.kind, Some(score));
         called = proposal.word;
     }
-    if asked.kind.is_none()
-        && sure.is_none()
-        && !is_cut
-        && let Some(shown) = inertia::as_shown(ink, classes, &reading)
-    {
-        let mut again = Report::default();
-        let proposal = Proposal { kind: taken, structure, is_cut: false };
-        let mut tried = attempt(asked, &proposal, ink, &shown, &mut again);
-        let was = Kind::from_reading(&tried);
-        let before = || {
-            let rows = (0..ink.strokes.len().saturating_sub(1)).collect();
-            let part = several::part(ink, classes, rows);
-            First::read(asked, &part.ink, &part.classes).shares.kinds
-        };
-        if !inertia::is_clear(ink, classes, (&reading, kind), was, &scores, before) {
-            inertia::tell(&mut tried, ink, classes);
+    if asked.kind.is_none() && sure.is_none() && !is_cut {
+        let how = Proposal { kind: taken, structure, is_cut: false };
+        if let Some((tried, again, was)) = as_shown(asked, (ink, classes), (&reading, kind), &how, &scores) {
             (reading, said, kind) = (tried, again, was);
         }
     }
@@ -392,17 +379,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
-    let is_hatched =
-        asked.kind.is_none() && (ink.strokes.len() > MOST_JUDGED || tangled_length(&reading) > 0.0);
-    let masses = is_hatched.then(|| by_masses(asked, ink, classes)).flatten();
+    let masses = by_masses(asked, (ink, classes), &reading, report);
     let is_of_masses = masses.is_some();
     if let Some((tried, again)) = masses {
         (reading, kind) = (tried, again);
-        report.warn(
-            "read-by-masses",
-            "most lines are shading: only the areas that they cover were read; if the plant is wrong, draw the \
-             outline of each organ with one line",
-        );
     }
     // If a reader knows several bodies, they are not a single one.
     as_body(ink, kind, free && called.is_none(), &mut reading);
@@ -422,6 +402,31 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let word = called.or_else(|| glance::word(kind, &glance.words));
     reading.plants = vec![described(ink, kind, (evidence, readings), word)];
     reading
+}
+
+/// Returns the plant as it was shown before the last stroke, unless another reading is clear now. `how`: the way in which
+/// that reading was made.
+fn as_shown(
+    asked: &Asked<'_>,
+    (ink, classes): (&Ink, &[Classified]),
+    (reading, kind): (&Reading, Kind),
+    how: &Proposal,
+    scores: &[Scored],
+) -> Option<(Reading, Report, Kind)> {
+    let shown = inertia::as_shown(ink, classes, reading)?;
+    let mut said = Report::default();
+    let mut tried = attempt(asked, how, ink, &shown, &mut said);
+    let was = Kind::from_reading(&tried);
+    let before = || {
+        let rows = (0..ink.strokes.len().saturating_sub(1)).collect();
+        let part = several::part(ink, classes, rows);
+        First::read(asked, &part.ink, &part.classes).shares.kinds
+    };
+    if inertia::is_clear(ink, classes, (reading, kind), was, scores, before) {
+        return None;
+    }
+    inertia::tell(&mut tried, ink, classes);
+    Some((tried, said, was))
 }
 
 /// Returns how much of a drawing of many organs a reading explains: 0 to 1. It is 1 for a drawing of few strokes, or
@@ -814,12 +819,28 @@ fn by_readers(
     inertia::agrees(ink, classes, &reading).then_some((reading, proposal, score))
 }
 
-/// Returns the plant that the masses of a hatched drawing are, and its kind, if no class was set by hand.
-fn by_masses(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Option<(Reading, Kind)> {
-    if asked.off.contains(&READ_AS) || classes.iter().any(|c| c.source == Source::User) {
+/// Returns the plant that the masses of a hatched drawing are, and its kind, if its reading is a tangle or was not
+/// compared with others, and no class or kind was set by hand.
+fn by_masses(
+    asked: &Asked<'_>,
+    (ink, classes): (&Ink, &[Classified]),
+    reading: &Reading,
+    report: &mut Report,
+) -> Option<(Reading, Kind)> {
+    let is_hatched = ink.strokes.len() > MOST_JUDGED || tangled_length(reading) > 0.0;
+    if !is_hatched
+        || asked.kind.is_some()
+        || asked.off.contains(&READ_AS)
+        || classes.iter().any(|c| c.source == Source::User)
+    {
         return None;
     }
     let proposal = structure::masses::propose(ink)?;
+    report.warn(
+        "read-by-masses",
+        "most lines are shading: only the areas that they cover were read; if the plant is wrong, draw the outline \
+         of each organ with one line",
+    );
     Some((composed(asked, ink, &proposal), proposal.kind))
 }
 

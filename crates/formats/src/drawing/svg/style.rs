@@ -266,7 +266,9 @@ fn mean(stops: &[Gradient]) -> Option<Gradient> {
     let weight = |s: &Gradient| if opaque > 0.0 { s.opacity / opaque } else { 1.0 / count };
     let channel = |k: usize| {
         let mean: f64 = stops.iter().map(|s| weight(s) * f64::from(s.color[k])).sum();
-        mean.round().clamp(0.0, 255.0) as u8
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a channel")]
+        let channel = mean.round().clamp(0.0, 255.0) as u8;
+        channel
     };
     Some(Gradient { color: [channel(0), channel(1), channel(2)], opacity: opaque / count })
 }

@@ -1,11 +1,12 @@
 //! The areas that lines cover: `lines -> masses, and stems between them`.
 
+use base::ops;
 use geom::{polyline_length, resample, simple_outline, simplify, smooth_gaussian_closed};
 use glam::DVec2;
 
 use super::super::shape::Shape;
 use super::MASSES;
-use crate::raster::{Cells, around, distances, drawn, flood, largest};
+use crate::raster::{Cells, around, distances, drawn, flood, largest, square};
 
 /// A wide part of the drawing.
 #[derive(Clone, Debug)]
@@ -54,7 +55,7 @@ impl Areas {
 
     /// Returns the area of its masses, each weighted by how convex it is: organs are, but not several together.
     fn convex(&self) -> f64 {
-        self.masses.iter().map(|m| m.shape.area * m.shape.convexity.powi(MASSES.convex_power)).sum()
+        self.masses.iter().map(|m| m.shape.area * ops::powf(m.shape.convexity, MASSES.convex_power)).sum()
     }
 
     /// Parts the cells that a ball does not reach from outside.
@@ -117,11 +118,7 @@ impl Mass {
         let piece = largest(cells, &|at| label[at] == Some(k))?;
         let rim = around(cells, &piece)?;
         let even = resample(&rim, cells.size);
-        let smooth = smooth_gaussian_closed(
-            &even,
-            MASSES.smooth,
-            (MASSES.smooth as f64).powi(2) * cells.size * cells.size,
-        );
+        let smooth = smooth_gaussian_closed(&even, MASSES.smooth, square(MASSES.smooth as f64 * cells.size));
         let outline = simple_outline(&simplify(&smooth, 0.3 * cells.size))?;
         let shape = Shape::new(&outline)?;
         let inner =
@@ -265,7 +262,7 @@ fn farthest(cells: &Cells, piece: &[bool], from: usize) -> (usize, Vec<usize>) {
 /// Smooths a path of cells; its ends stay.
 fn calmed(path: &[DVec2]) -> Vec<DVec2> {
     let step = path.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f64::max);
-    geom::smooth_gaussian(path, MASSES.smooth, (MASSES.smooth as f64 * step).powi(2))
+    geom::smooth_gaussian(path, MASSES.smooth, square(MASSES.smooth as f64 * step))
 }
 
 /// Returns for each area the rows of the strokes that lie in it more than in others, the longest first.
@@ -297,7 +294,7 @@ fn strokes_by_label(
 /// Returns how much the lines in a piece run away from a point; see [`Mass::radial`]. Its rim does not count, nor what
 /// lies round the point, where lines of all directions meet.
 fn radiality(cells: &Cells, (lines, piece, depth): (&[&[DVec2]], &[bool], &[f64]), middle: DVec2) -> f64 {
-    let reach = (piece.iter().filter(|p| **p).count() as f64 / base::ops::PI).sqrt() * cells.size;
+    let reach = (piece.iter().filter(|p| **p).count() as f64 / ops::PI).sqrt() * cells.size;
     let (mut sum, mut length) = (0.0, 0.0);
     for pair in lines.iter().flat_map(|l| l.windows(2)) {
         let at = pair[0].midpoint(pair[1]);

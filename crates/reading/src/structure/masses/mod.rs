@@ -22,7 +22,7 @@ struct MassLimits {
     /// Radii of the balls that close gaps between lines, in ascending order.
     balls: [f64; 4],
     /// Exponent by which the area of a mass counts less where it is not convex.
-    convex_power: i32,
+    convex_power: f64,
     /// Pieces below this share of the area of the largest are letters, or dirt.
     piece: f64,
     /// Parts in which a ball of this radius finds no room are slender.
@@ -74,7 +74,7 @@ struct MassLimits {
 const MASSES: MassLimits = MassLimits {
     along: 240,
     balls: [0.007, 0.012, 0.018, 0.026],
-    convex_power: 4,
+    convex_power: 4.0,
     piece: 0.05,
     thin: 0.016,
     stem: 0.05,
@@ -216,6 +216,11 @@ impl Profile {
         for p in geom::resample(&closed(&head.outline), 0.01 * head.inner.max(1e-6)) {
             let away = p - middle;
             let turn = ops::atan2(away.y, away.x).rem_euclid(ops::TAU) / step;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "clamped to the directions"
+            )]
             let row = (turn as usize).min(DIRECTIONS - 1);
             radius[row] = radius[row].max(away.length());
         }
@@ -294,7 +299,7 @@ impl Profile {
         let rim = (0..=span).map(|k| {
             let t = 2.0 * k as f64 / span as f64 - 1.0;
             let at = (from + k) % DIRECTIONS;
-            let r = self.radius[at] * (1.0 - MASSES.rounded * t.powi(4));
+            let r = self.radius[at] * (1.0 - MASSES.rounded * (t * t) * (t * t));
             self.middle + r * direction(at as f64)
         });
         let points: Vec<DVec2> = core::iter::once(root).chain(rim).chain([root]).collect();

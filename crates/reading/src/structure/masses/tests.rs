@@ -9,7 +9,7 @@ fn hatched(middle: DVec2, radius: impl Fn(f64) -> f64) -> Vec<Vec<DVec2>> {
     let line = |k: u32| {
         let angle = ops::TAU * f64::from(k) / 90.0;
         let way = DVec2::new(ops::cos(angle), ops::sin(angle));
-        let from = if k % 2 == 0 { 0.15 } else { 0.55 };
+        let from = if k.is_multiple_of(2) { 0.15 } else { 0.55 };
         [from, from + 0.2, from + 0.4].map(|share| middle + way * share * radius(angle)).to_vec()
     };
     (0..90).map(line).collect()
