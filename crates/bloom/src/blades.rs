@@ -4,8 +4,9 @@ use base::{Cancelled, Run, Seed};
 use glam::DVec3;
 
 use crate::clean::{CleanSpec, clean};
-use crate::segment::{ScanOrgan, SegmentSpec, organs};
+use crate::segment::{ScanOrgan, organs};
 use crate::thin::thin;
+use crate::ways::SegmentSpec;
 
 /// Points that are examined: a leaf of a hundredth of the plant still has some hundreds of them.
 const SAMPLE: usize = 20_000;

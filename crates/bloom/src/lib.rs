@@ -98,8 +98,9 @@ pub use parts::{Achenes, Cluster, ClusterForm, Disc, Foliage, Fruit, Nods, Stame
 pub use plot::plot_svg;
 pub use pose::{OrganStep, PoseDoubt, PoseStep, RigidMotion, Settled, settle};
 pub use register::{RegisterSpec, Registration, register};
-pub use segment::{ScanOrgan, SegmentSpec, match_organs, organ_at, organs, single_organ};
+pub use segment::{ScanOrgan, match_organs, organ_at, organs, single_organ};
 pub use species::{preset, preset_text};
 pub use trial::{Rival, Trial, TrialRow, best_move, leave_one_out};
 pub use wanted::{FlowerSpec, PetalMesh};
+pub use ways::SegmentSpec;
 pub use whorl::{Aestivation, Fate, Guide, Innermost, Insertion, PetalForm, Whorl};

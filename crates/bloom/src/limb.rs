@@ -7,7 +7,8 @@ use geom::KdTree;
 use glam::{DVec2, DVec3};
 
 use crate::BloomError;
-use crate::segment::{ScanOrgan, SegmentSpec, single_organ};
+use crate::segment::{ScanOrgan, single_organ};
+use crate::ways::SegmentSpec;
 
 /// The line of a stem or a stalk.
 #[derive(Clone, Debug, Default, PartialEq)]

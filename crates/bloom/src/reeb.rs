@@ -3,8 +3,7 @@
 use base::{CancelToken, Cancelled};
 use glam::DVec3;
 
-use crate::SegmentSpec;
-use crate::ways::{NONE, Ways};
+use crate::ways::{NONE, SegmentSpec, Ways};
 
 /// Width of a band, in cubes.
 const BAND: f64 = 3.0;

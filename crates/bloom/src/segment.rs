@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use crate::BloomError;
 use crate::reeb::Tree;
-use crate::ways::Ways;
+use crate::ways::{SegmentSpec, Ways};
 
 /// One organ of a scan.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,26 +58,6 @@ impl ScanOrgan {
             out[k].push(i);
         }
         out
-    }
-}
-
-/// Settings of the segmentation of a plant into organs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SegmentSpec {
-    /// Upward direction; the foot is a low place along it, near the middle of the plant. Default +Y.
-    pub up: DVec3,
-    /// Point of attachment of the plant (or the single organ); found by `up` if `None`.
-    pub foot: Option<DVec3>,
-    /// Length of branches, as a share of the longest path, below which they are parts of their bearers, 0 to 1. Default
-    /// 0.06.
-    pub least_length: f64,
-    /// Share of the surface below which branches are parts of their bearers, 0 to 1. Default 0.004.
-    pub least_area: f64,
-}
-
-impl Default for SegmentSpec {
-    fn default() -> Self {
-        Self { up: DVec3::Y, foot: None, least_length: 0.06, least_area: 0.004 }
     }
 }
 

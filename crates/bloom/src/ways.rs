@@ -6,7 +6,27 @@ use base::{CancelToken, Cancelled, ops};
 use geom::{KdTree, Step, Voxels};
 use glam::DVec3;
 
-use crate::{BloomError, SegmentSpec};
+use crate::BloomError;
+
+/// Settings of the segmentation of a plant into organs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentSpec {
+    /// Upward direction; the foot is a low place along it, near the middle of the plant. Default +Y.
+    pub up: DVec3,
+    /// Point of attachment of the plant (or the single organ); found by `up` if `None`.
+    pub foot: Option<DVec3>,
+    /// Length of branches, as a share of the longest path, below which they are parts of their bearers, 0 to 1. Default
+    /// 0.06.
+    pub least_length: f64,
+    /// Share of the surface below which branches are parts of their bearers, 0 to 1. Default 0.004.
+    pub least_area: f64,
+}
+
+impl Default for SegmentSpec {
+    fn default() -> Self {
+        Self { up: DVec3::Y, foot: None, least_length: 0.06, least_area: 0.004 }
+    }
+}
 
 /// Marks a cube or a piece that has none.
 pub(crate) const NONE: usize = usize::MAX;
