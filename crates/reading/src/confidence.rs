@@ -28,7 +28,7 @@ pub struct ConfidenceLimits {
     /// Greatest confidence in a tangle of bare lines ([`crate::tangled_length`]): of 49 in line art by people one is
     /// right.
     pub tangle_most: f64,
-    /// Confidence in a reading by masses: of six in line art by people five show the kind of plant, but none all of it.
+    /// Confidence in a reading by masses: of ten in line art by people six are acceptable, and none is complete.
     pub by_masses: f64,
     /// Confidence in a drawing of so many strokes that the model compares no kinds: both such drawings among the line
     /// art by people are read wrongly.
