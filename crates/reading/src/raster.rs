@@ -91,21 +91,25 @@ pub(crate) fn grown(cells: &Cells, from: &[bool], ball: &[(isize, isize)]) -> Ve
     all
 }
 
-/// Returns the largest connected piece of cells.
+/// Returns the largest connected piece of cells, of several as large the first. Cost: linear in cells.
 pub(crate) fn largest(cells: &Cells, is: &dyn Fn(usize) -> bool) -> Option<Vec<bool>> {
+    let pieces = pieces(cells, is);
+    let best = pieces.into_iter().rev().max_by_key(Vec::len)?;
+    let mut mask = vec![false; cells.count()];
+    best.into_iter().for_each(|k| mask[k] = true);
+    Some(mask)
+}
+
+/// Returns the cells of each connected piece, pieces in the order of their first cells. Cost: linear in cells.
+pub(crate) fn pieces(cells: &Cells, is: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let mut seen = vec![false; cells.count()];
-    let mut best: (usize, Option<Vec<bool>>) = (0, None);
+    let mut found = Vec::new();
     for k in 0..seen.len() {
         if !seen[k] && is(k) {
-            let piece = flood(cells, k, is);
-            seen.iter_mut().zip(&piece).for_each(|(s, p)| *s |= p);
-            let area = piece.iter().filter(|p| **p).count();
-            if area > best.0 {
-                best = (area, Some(piece));
-            }
+            found.push(spread(cells, k, is, &mut seen));
         }
     }
-    best.1
+    found
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
@@ -132,13 +136,21 @@ pub(crate) fn drawn(cells: &Cells, lines: &[&[DVec2]]) -> Vec<bool> {
 /// Marks the cells connected with a cell.
 pub(crate) fn flood(cells: &Cells, from: usize, is: &dyn Fn(usize) -> bool) -> Vec<bool> {
     let mut found = vec![false; cells.count()];
-    let mut ahead = vec![from];
-    found[from] = true;
-    while let Some(at) = ahead.pop() {
+    spread(cells, from, is, &mut found);
+    found
+}
+
+/// Returns the cells connected with a cell, that cell first, and marks them as seen.
+fn spread(cells: &Cells, from: usize, is: &dyn Fn(usize) -> bool, seen: &mut [bool]) -> Vec<usize> {
+    seen[from] = true;
+    let mut found = vec![from];
+    let mut next = 0;
+    while let Some(&at) = found.get(next) {
+        next += 1;
         for k in cells.around(at, &BESIDE) {
-            if !found[k] && is(k) {
-                found[k] = true;
-                ahead.push(k);
+            if !seen[k] && is(k) {
+                seen[k] = true;
+                found.push(k);
             }
         }
     }

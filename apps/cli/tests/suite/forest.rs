@@ -13,8 +13,12 @@ use serde_json::Value;
 use crate::tools;
 use tools::{bad, folder, good, json};
 
-/// The smallest plants that have leaves and levels.
-const LIGHT: &[&str] = &[
+/// Writes an inventory as a forest of the smallest plants that have leaves and levels.
+pub(crate) const SMALL: &[&str] = &[
+    "forest",
+    "in/trees.csv",
+    "-o",
+    "out/f",
     "--detail",
     "0.1",
     "--sides",
@@ -30,6 +34,8 @@ const LIGHT: &[&str] = &[
     "--tile-trees",
     "4",
 ];
+/// The options of that command.
+const LIGHT: &[&str] = SMALL.split_at(4).1;
 const TREES: usize = 16;
 
 /// Writes an inventory of so many trees of two species, `trees.csv`.

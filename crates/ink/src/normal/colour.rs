@@ -35,8 +35,6 @@ const SAME_HUE: f64 = 8.0;
 const HUED: u8 = 40;
 /// Greys of which each channel is at least this are tones of white.
 const PALE: u8 = 120;
-/// Least value of each channel of the white of the paper.
-const WHITE: u8 = 246;
 
 /// Returns the hue of a colour in degrees, 0 to 360, and the difference between its largest and its smallest channel: 0 for
 /// grey, which has hue 0.
@@ -127,7 +125,7 @@ impl Work {
             if let Some(Fill { color: Some(color), said: true, opacity, .. }) = figure.fill
                 && figure.lined
                 && opacity > 0.0
-                && color.iter().any(|c| *c < WHITE)
+                && color.iter().any(|c| *c < LIMITS.white)
             {
                 figure.like.color = Some(color);
             }
@@ -157,7 +155,7 @@ impl Work {
         }
         // The lowest area is the colour; the areas above it shade it.
         for (figure, color) in color_of.into_iter().rev() {
-            if color.iter().any(|c| *c < WHITE) {
+            if color.iter().any(|c| *c < LIMITS.white) {
                 self.figures[figure].like.color = Some(color);
             }
         }

@@ -73,6 +73,8 @@ struct Limits {
     under: f64,
     /// Areas below this opacity shade what they lie on.
     translucent: f64,
+    /// Least value of each channel of the white of the paper.
+    white: u8,
     /// Most pairs of areas and outlines that are compared.
     pairs: usize,
 }
@@ -96,6 +98,7 @@ const LIMITS: Limits = Limits {
     twice: 0.03,
     under: 0.14,
     translucent: 0.6,
+    white: 246,
     pairs: 4_000_000,
 };
 

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use super::{Change, Extent, Figure, Work, places};
+use super::{Change, Extent, Figure, LIMITS, Work, places};
 use crate::InkSample;
 
 /// Ink is this many times longer than wide; a leaf of 1 : 8 is 12 times as long as it is wide on the average.
@@ -35,8 +35,6 @@ const SPUR: f64 = 1.6;
 const SPUR_OF_ICON: f64 = 1.0;
 /// Two edges continue each other where the angle between them is below 60 degrees.
 const STRAIGHT_ON: f64 = -0.5;
-/// White paper, and ink that is not seen on it, has at least this in each channel.
-const WHITE: u8 = 250;
 /// Parts without holes that are no longer than this many widths are specks.
 const SPECK: f64 = 2.0;
 
@@ -94,8 +92,7 @@ impl Work {
         }
         let mut unseen = 0;
         for row in 0..self.figures.len() {
-            let is_unseen = self.is_unseen(row);
-            let figure = &mut self.figures[row];
+            let figure = &self.figures[row];
             if figure.lined || !figure.fill.is_some_and(|f| f.said) {
                 continue;
             }
@@ -109,9 +106,9 @@ impl Work {
             if ink < MOSTLY * around || ink <= 0.0 {
                 continue;
             }
-            if is_unseen {
+            if self.is_unseen(row) {
                 unseen += figure.lines.len();
-                figure.lines.clear();
+                self.figures[row].lines.clear();
                 continue;
             }
             let mut lines = Vec::new();
@@ -134,6 +131,7 @@ impl Work {
                 continue;
             }
             reduced += 1;
+            let figure = &mut self.figures[row];
             figure.lines = lines.iter().map(|l| samples(l)).collect();
             figure.like.color = figure.like.color.or(figure.fill.and_then(|f| f.color));
             figure.like.width = Some(pen);
@@ -147,13 +145,13 @@ impl Work {
     /// Whether a figure is white and lies on white paper: nothing of another colour was painted below it, but something
     /// was elsewhere.
     fn is_unseen(&self, row: usize) -> bool {
-        let is_white = |f: &Figure| f.color_seen().is_some_and(|c| c.iter().all(|x| *x >= WHITE));
+        let is_white = |f: &Figure| f.color_seen().is_some_and(|c| c.iter().all(|x| *x >= LIMITS.white));
         let extent = |f: &Figure| f.lines.iter().filter_map(|l| Extent::from_line(l)).reduce(Extent::with);
-        let Some(own) = extent(&self.figures[row]) else { return false };
-        let is_below = |f: &Figure| !is_white(f) && extent(f).is_some_and(|e| e.meets(own));
+        let own = extent(&self.figures[row]);
+        let meets = |f: &Figure| extent(f).zip(own).is_some_and(|(e, own)| e.meets(own));
         is_white(&self.figures[row])
-            && !self.figures[..row].iter().any(is_below)
             && !self.figures.iter().all(is_white)
+            && !self.figures[..row].iter().any(|f| !is_white(f) && meets(f))
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::super::shape::Shape;
 use super::MASSES;
-use crate::raster::{Cells, around, distances, drawn, flood, largest, square};
+use crate::raster::{Cells, around, distances, drawn, flood, largest, pieces, square};
 
 /// A wide part of the drawing.
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ pub(super) struct Areas {
 impl Areas {
     /// Finds the areas that lines cover, with the ball that leaves the most convex masses: a smaller one finds its way
     /// into organs, a larger one finds no way between them. `None` if the lines have no extent. Cost: linear in points,
-    /// and a few pictures of [`MASSES`]`.along` cells a side.
+    /// and a few hundred passes over a picture of [`MASSES`]`.along` cells a side.
     pub(super) fn new(lines: &[&[DVec2]]) -> Option<Self> {
         let size = Cells::size_for(lines, MASSES.along)?;
         let widest = MASSES.balls.into_iter().fold(0.0, f64::max);
@@ -77,18 +77,21 @@ impl Areas {
             strokes: strokes[first_stem + k].clone(),
         };
         Self {
-            masses: (0..first_stem).filter_map(mass).collect(),
+            // Basins are numbered from the deepest.
+            masses: (0..first_stem.min(MASSES.most)).filter_map(mass).collect(),
             stems: paths.iter().enumerate().map(stem).collect(),
         }
     }
 }
 
-/// Finds the stems among the cells without a label and labels them, from `first` on; returns their paths.
+/// Finds the stems among the cells without a label and labels them, from `first` on; returns their paths. The largest
+/// pieces are looked at first, and only a few.
 fn label_stems(cells: &Cells, whole: &[bool], label: &mut [Option<usize>], first: usize) -> Vec<Vec<DVec2>> {
     let thin = MASSES.thin / cells.size;
     let mut slender: Vec<bool> = (0..whole.len()).map(|k| whole[k] && label[k].is_none()).collect();
     let mut paths = Vec::new();
-    while let Some(piece) = largest(cells, &|k| slender[k]) {
+    for _ in 0..MASSES.most {
+        let Some(piece) = largest(cells, &|k| slender[k]) else { break };
         let path = longest_path(cells, &piece);
         let points: Vec<DVec2> = path.iter().map(|&k| cells.middle(k)).collect();
         if polyline_length(&points) <= MASSES.stem {
@@ -145,19 +148,14 @@ fn sealed(cells: &Cells, to_ink: &[f64], ball: f64) -> Vec<bool> {
     distances(cells, &middles).iter().map(|d| *d > ball).collect()
 }
 
-/// Returns the connected pieces of a mask that are large enough, and the largest.
+/// Returns the largest connected pieces of a mask: a few, and none far smaller than the largest.
 fn largest_pieces(cells: &Cells, mask: &[bool]) -> Vec<bool> {
-    let mut rest = mask.to_vec();
+    let mut all = pieces(cells, &|k| mask[k]);
+    base::sort_by_key(&mut all, |piece| core::cmp::Reverse(piece.len()));
+    let least = MASSES.piece * all.first().map_or(0, Vec::len) as f64;
     let mut kept = vec![false; mask.len()];
-    let mut first = None;
-    while let Some(piece) = largest(cells, &|k| rest[k]) {
-        let area = piece.iter().filter(|p| **p).count() as f64;
-        if area < MASSES.piece * *first.get_or_insert(area) {
-            break;
-        }
-        for (k, _) in piece.iter().enumerate().filter(|(_, is)| **is) {
-            (rest[k], kept[k]) = (false, true);
-        }
+    for piece in all.iter().take(MASSES.most).take_while(|piece| piece.len() as f64 >= least) {
+        piece.iter().for_each(|&k| kept[k] = true);
     }
     kept
 }

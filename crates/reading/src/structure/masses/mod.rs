@@ -25,6 +25,8 @@ struct MassLimits {
     convex_power: f64,
     /// Pieces below this share of the area of the largest are letters, or dirt.
     piece: f64,
+    /// Most pieces, masses, and slender pieces that are looked at, the largest first: more are texture, or dirt.
+    most: usize,
     /// Parts in which a ball of this radius finds no room are slender.
     thin: f64,
     /// Slender parts longer than this are stems.
@@ -67,8 +69,6 @@ struct MassLimits {
     slender: f64,
     /// Greatest distance between a stem and a mass that touch.
     touch: f64,
-    /// See [`Proposal::likelihood`].
-    likelihood: f64,
 }
 
 const MASSES: MassLimits = MassLimits {
@@ -76,6 +76,7 @@ const MASSES: MassLimits = MassLimits {
     balls: [0.007, 0.012, 0.018, 0.026],
     convex_power: 4.0,
     piece: 0.05,
+    most: 64,
     thin: 0.016,
     stem: 0.05,
     neck: 0.85,
@@ -97,7 +98,6 @@ const MASSES: MassLimits = MassLimits {
     stalk: 0.6,
     slender: 0.45,
     touch: 0.02,
-    likelihood: 1.0,
 };
 
 /// Proposes a plant by the masses of a drawing; `None` if these are no plant that can be told.
@@ -107,19 +107,19 @@ pub(crate) fn propose(ink: &Ink) -> Option<Proposal> {
     let is_painted = palette::is_painted(ink);
     let is_foliage =
         |m: &Mass| is_painted && palette::is_mostly_green(m.strokes.iter().map(|&k| &ink.strokes[k]));
-    let may_be_head = |m: &Mass| may_be_head(m) && !is_foliage(m);
-    let widest = masses.iter().filter(|m| may_be_head(m)).map(|m| m.inner).fold(0.0, f64::max);
-    let is_head = |m: &Mass| may_be_head(m) && m.inner > MASSES.alike * widest;
-    let heads: Vec<&Mass> = masses.iter().filter(|m| is_head(m)).collect();
+    let (mut heads, mut rest): (Vec<&Mass>, Vec<&Mass>) =
+        masses.iter().partition(|m| may_be_head(m) && !is_foliage(m));
+    let widest = heads.iter().map(|m| m.inner).fold(0.0, f64::max);
+    rest.extend(heads.extract_if(.., |m| m.inner <= MASSES.alike * widest));
     let area = |m: &Mass| m.shape.area;
     let all: f64 = masses.iter().map(area).sum();
     if heads.iter().map(|m| area(m)).sum::<f64>() <= MASSES.heads * all {
         return None;
     }
-    let rest = || masses.iter().filter(|m| !is_head(m));
     let mut parts: Vec<Part> = stems.iter().map(Part::from_stem).collect();
     parts.extend(
-        rest().map(|m| if bears(m, &heads) { Part::from_stalk(m) } else { leaf(m, &stems, &masses) }),
+        rest.into_iter()
+            .map(|m| if bears(m, &heads) { Part::from_stalk(m) } else { leaf(m, &stems, &masses) }),
     );
     for head in &heads {
         parts.extend(Profile::new(head).organs(head));
@@ -129,7 +129,8 @@ pub(crate) fn propose(ink: &Ink) -> Option<Proposal> {
         kind,
         parts,
         heads: Vec::new(),
-        likelihood: MASSES.likelihood,
+        // It competes with no other proposal.
+        likelihood: 1.0,
         word: None,
         is_of_pieces: true,
     })
@@ -141,7 +142,7 @@ fn may_be_head(mass: &Mass) -> bool {
     shape.slenderness > MASSES.round
         && mass.radial > MASSES.radial
         && (shape.convexity > MASSES.whole
-            || shape.convexity > MASSES.convex && Profile::new(mass).is_lobed())
+            || shape.convexity > MASSES.convex && Profile::new(mass).lobes().is_some())
 }
 
 /// Whether a mass is the stem of a head: below it, narrower, and longish.
@@ -262,21 +263,20 @@ impl Profile {
         notches
     }
 
-    /// Whether it has the lobes of a flower, of similar width.
-    fn is_lobed(&self) -> bool {
-        let notches = self.notches();
-        (MASSES.lobes[0]..=MASSES.lobes[1]).contains(&notches.len()) && are_even(&notches)
+    /// Returns the directions between its lobes, if it has those of a flower, of similar width.
+    fn lobes(&self) -> Option<Vec<usize>> {
+        let is_flower = |notches: &Vec<usize>| {
+            (MASSES.lobes[0]..=MASSES.lobes[1]).contains(&notches.len()) && are_even(notches)
+        };
+        Some(self.notches()).filter(is_flower)
     }
 
     /// Returns the petals and the disc of a head.
     fn organs(&self, head: &Mass) -> Vec<Part> {
-        let is_lobed = self.is_lobed();
-        let from: Vec<usize> = if is_lobed {
-            self.notches()
-        } else {
-            (0..MASSES.rays).map(|k| k * DIRECTIONS / MASSES.rays).collect()
-        };
-        let hub = MASSES.disc[usize::from(!is_lobed)] * self.mean();
+        let lobes = self.lobes();
+        let hub = MASSES.disc[usize::from(lobes.is_none())] * self.mean();
+        let rays = || (0..MASSES.rays).map(|k| k * DIRECTIONS / MASSES.rays).collect();
+        let from: Vec<usize> = lobes.unwrap_or_else(rays);
         let mut parts: Vec<Part> =
             (0..from.len()).map(|k| self.petal(from[k], from[(k + 1) % from.len()], hub, head)).collect();
         let disc: Vec<DVec2> = (0..=24)

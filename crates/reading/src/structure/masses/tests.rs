@@ -82,3 +82,19 @@ fn a_stem_is_found_between_two_masses() {
     let strokes = |rows: &[usize]| rows.to_vec();
     assert_eq!(strokes(&areas.stems[0].strokes), [2]);
 }
+
+#[test]
+fn pieces_beyond_a_few_are_texture() {
+    // Flecks too far apart to be one area, each a piece of its own.
+    let fleck = |k: u32| {
+        let at = DVec2::new(f64::from(k % 38), f64::from(k / 38)) * 26.0;
+        vec![at, at + DVec2::new(4.0, 0.0), at + DVec2::new(2.0, 3.0)]
+    };
+    let lines: Vec<Vec<DVec2>> = (0..1444).map(fleck).collect();
+    let drawing = Drawing::from_polylines("test", &lines);
+    let ink = ink::clean(&drawing, &mut base::Report::default());
+    let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
+    let areas = Areas::new(&lines).expect("lines have an extent");
+    assert!(areas.masses.len() <= MASSES.most && areas.stems.len() <= MASSES.most);
+    assert!(propose(&ink).is_none());
+}

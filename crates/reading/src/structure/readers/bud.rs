@@ -5,7 +5,7 @@ use glam::DVec2;
 use ink::{Ink, StrokeClass};
 
 use super::super::faces::{Face, Run};
-use super::{LIMITS, Part, Proposal, Scene, is_leaf_from};
+use super::{LIMITS, Part, Proposal, Scene, halves, is_leaf_from};
 use crate::blade::nearest_on_ring;
 use crate::palette::Brights;
 use crate::{Kind, palette};
@@ -126,8 +126,7 @@ pub(super) fn propose(scene: &Scene, ink: &Ink) -> Option<Proposal> {
         return None;
     }
     let base = nearest_on_ring(&front.outline, DVec2::new(front.shape.middle.x, low.y)).0;
-    let right = hull.iter().map(|p| DVec2::new(p.x.max(base.x), p.y)).collect::<Vec<_>>();
-    let share = signed_area(&right).abs() / signed_area(&hull);
+    let [left, right] = halves(&hull, base.x);
     let (lowest, highest) = bounds(&hull)?;
     let leads_out = |p: &DVec2| {
         p.y > lowest.y + BUD.low * (highest.y - lowest.y)
@@ -139,7 +138,7 @@ pub(super) fn propose(scene: &Scene, ink: &Ink) -> Option<Proposal> {
     if scene.axes.iter().filter(|a| a.ends().iter().any(is_from_head)).count() > 1 {
         return None;
     }
-    let is_even = (BUD.half..=1.0 - BUD.half).contains(&share);
+    let is_even = left.min(right) >= BUD.half * (left + right);
     if !is_even || scene.axes.iter().any(|a| a.points.iter().any(leads_out)) {
         return None;
     }

@@ -5,7 +5,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::{Axis, Part, Proposal, Scene};
+use super::{Axis, Part, Proposal, Scene, halves};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
@@ -124,12 +124,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if stem.is_none() && foot < CUP.foot[1] * size.x {
         return None;
     }
-    let side = |sign: f64| {
-        let half: Vec<DVec2> =
-            head.outline.iter().map(|p| DVec2::new(base.x + (sign * (p.x - base.x)).max(0.0), p.y)).collect();
-        geom::signed_area(&half).abs()
-    };
-    let (right, left) = (side(1.0), side(-1.0));
+    let [left, right] = halves(&head.outline, base.x);
     let lopsided = if stem.is_some() { CUP.lopsided } else { CUP.stemless_lopsided };
     if (right - left).abs() > lopsided * (right + left) {
         return None;

@@ -25,7 +25,7 @@ mod taproot;
 #[cfg(test)]
 mod tests;
 
-use geom::{bounds, distance_to_polyline, polyline_length};
+use geom::{bounds, distance_to_polyline, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{Ink, StrokeClass, StrokeMode};
 
@@ -478,6 +478,15 @@ fn green_petals_are_leaves(proposal: &mut Proposal, ink: &Ink) {
 /// Turns an outline so that `up` points up, about a place that becomes the origin.
 pub(crate) fn upright(outline: &[DVec2], origin: DVec2, up: DVec2) -> Vec<DVec2> {
     outline.iter().map(|&p| DVec2::new((p - origin).perp_dot(up), (p - origin).dot(up))).collect()
+}
+
+/// Returns the areas of an outline to the left and to the right of a level.
+pub(crate) fn halves(outline: &[DVec2], x: f64) -> [f64; 2] {
+    [-1.0, 1.0].map(|sign: f64| {
+        let half: Vec<DVec2> =
+            outline.iter().map(|p| DVec2::new(x + (sign * (p.x - x)).max(0.0), p.y)).collect();
+        signed_area(&half).abs()
+    })
 }
 
 /// Returns the greatest width, and the share of the height at which it is, of those measured at the middles of `levels`
