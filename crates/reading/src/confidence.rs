@@ -30,6 +30,8 @@ pub struct ConfidenceLimits {
     pub tangle_most: f64,
     /// Confidence in a reading by masses: of ten in line art by people six are acceptable, and none is complete.
     pub by_masses: f64,
+    /// Least confidence in a reading by the colours of a painted picture.
+    pub by_colours_least: f64,
     /// Confidence in a drawing of so many strokes that the model compares no kinds: both such drawings among the line
     /// art by people are read wrongly.
     pub not_weighed: f64,
@@ -50,6 +52,7 @@ pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
     by_arrangement_least: 0.8,
     tangle_most: 0.05,
     by_masses: 0.25,
+    by_colours_least: 0.6,
     not_weighed: 0.35,
     explained_least: 0.8,
     guess_most: 0.35,
@@ -76,6 +79,8 @@ pub struct Evidence {
     pub is_tangle: bool,
     /// Whether it was read by its masses, since its lines are a tangle.
     pub by_masses: bool,
+    /// Whether it was read by the colours of a painted picture.
+    pub by_colours: bool,
     /// Whether it is a tree, palm or bush: the model has seen all forms of these kinds, so its share counts whatever
     /// the structure says.
     pub is_wood: bool,
@@ -110,6 +115,9 @@ impl Evidence {
         let is_many = self.strokes >= limits.many_strokes;
         if is_many && self.explained < limits.explained_least {
             return chance.min(limits.guess_most);
+        }
+        if self.by_colours {
+            return chance.max(limits.by_colours_least);
         }
         if self.by_arrangement {
             return chance.max(limits.by_arrangement_least);
@@ -161,6 +169,7 @@ mod tests {
             by_arrangement: false,
             is_tangle: false,
             by_masses: false,
+            by_colours: false,
             is_wood: false,
             explained: 1.0,
         };
@@ -186,6 +195,7 @@ mod tests {
             by_arrangement: false,
             is_tangle: false,
             by_masses: false,
+            by_colours: false,
             is_wood: false,
             explained: 1.0,
         };

@@ -106,7 +106,8 @@ pub(crate) fn discs(draft: &Draft<'_>) -> Vec<(DiscReading, usize)> {
         let centre = if hull.len() > 2 { geom::centroid(hull) } else { lo.midpoint(hi) };
         let radius =
             if hull.len() > 2 { (geom::signed_area(hull) / ops::PI).sqrt() } else { 0.25 * lo.distance(hi) };
-        let disc = DiscReading { centre, radius: radius.max(1e-4), source: Some(stroke.index) };
+        let disc =
+            DiscReading { centre, radius: radius.max(1e-4), source: Some(stroke.index), color: stroke.color };
         discs.push((disc, k));
     }
     discs

@@ -14,6 +14,8 @@ struct PaletteLimits {
     grey: u8,
     /// A colour whose largest channel is below this is ink, whatever its hue.
     dark: u8,
+    /// A colour whose channels are all at least this is nearly white.
+    pale: u8,
     /// The hues of green, degrees: from the olive of dry grass to the blue green of a conifer.
     green: core::ops::Range<f64>,
     /// The hues of blue, degrees: from cyan to violet. No leaf, wood or pot has them.
@@ -34,6 +36,7 @@ const LIMITS: PaletteLimits = PaletteLimits {
     differs: 24,
     grey: 30,
     dark: 60,
+    pale: 190,
     green: 62.0..170.0,
     blue: 185.0..285.0,
     above: 0.1,
@@ -49,6 +52,14 @@ pub(crate) fn is_painted(ink: &Ink) -> bool {
     let Some(first) = colors.clone().next() else { return false };
     let differs = |c: [u8; 3]| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > LIMITS.differs);
     colors.clone().any(differs) && colors.any(is_green)
+}
+
+/// Whether a drawing was made in several colours, one of them green or bright.
+pub(crate) fn is_coloured(ink: &Ink) -> bool {
+    let mut colors = ink.strokes.iter().filter_map(|s| s.color);
+    let Some(first) = colors.clone().next() else { return false };
+    let differs = |c: [u8; 3]| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > LIMITS.differs);
+    colors.any(differs) && ink.strokes.iter().any(|s| is_green_stroke(s) || is_bright_stroke(s))
 }
 
 /// Whether a stroke is green: by its hue, and neither grey nor nearly black.
@@ -68,6 +79,11 @@ pub(crate) fn is_mostly_green<'a>(strokes: impl Iterator<Item = &'a InkStroke>) 
 /// Whether a stroke has a colour that neither leaves nor wood have.
 pub(crate) fn is_bright_stroke(stroke: &InkStroke) -> bool {
     stroke.color.is_some_and(|c| !is_green(c) && !may_be_wood(c))
+}
+
+/// Whether a stroke is nearly white.
+pub(crate) fn is_pale_stroke(stroke: &InkStroke) -> bool {
+    stroke.color.is_some_and(|c| c.into_iter().all(|x| x >= LIMITS.pale))
 }
 
 /// Where the bright colours of a painted drawing lie: those of petals, fruits and roots.

@@ -300,6 +300,11 @@ const FITS: f64 = 0.8;
 const LEAFY: usize = 8;
 /// Fewest fronds of a palm if the whole is known to be one.
 const FEWEST_FRONDS: usize = 2;
+/// A painted picture of which more than this share contradicts the reading by its colours is read by these
+/// (*drawings*).
+const CONTRADICTED: f64 = 0.2;
+/// A reading by colours contradicts less than this share of the picture that another reading does.
+const HALF_CONTRADICTED: f64 = 0.5;
 /// Most readings that are reported.
 const TOLD: usize = 3;
 
@@ -384,8 +389,13 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if let Some((tried, again)) = masses {
         (reading, kind) = (tried, again);
     }
+    let colours = by_colours(asked, (ink, classes), (&reading, kind));
+    let is_of_colours = colours.is_some();
+    if let Some((tried, again)) = colours {
+        (reading, kind) = (tried, again);
+    }
     // If a reader knows several bodies, they are not a single one.
-    as_body(ink, kind, free && called.is_none(), &mut reading);
+    as_body(ink, kind, free && called.is_none() && !is_of_colours, &mut reading);
     let evidence = Evidence {
         share: share_of(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
         undecided: glance::entropy(&glance.words),
@@ -395,6 +405,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         by_arrangement: sure.is_some(),
         is_tangle: tangled_length(&reading) > 0.0,
         by_masses: is_of_masses,
+        by_colours: is_of_colours,
         is_wood: matches!(kind, Kind::Tree | Kind::Conifer | Kind::Palm | Kind::Bush),
         explained: explained(&facts, &reading),
     };
@@ -842,6 +853,27 @@ fn by_masses(
          of each organ with one line",
     );
     Some((composed(asked, ink, &proposal), proposal.kind))
+}
+
+/// Returns the plant that the colours of a painted picture are, and its kind, if another reading contradicts them more,
+/// and no class or kind was set by hand.
+fn by_colours(
+    asked: &Asked<'_>,
+    (ink, classes): (&Ink, &[Classified]),
+    (other, kind): (&Reading, Kind),
+) -> Option<(Reading, Kind)> {
+    if asked.kind.is_some() || !asked.is_free(ink, classes) {
+        return None;
+    }
+    let found = structure::painted::contradicted(ink, other, kind);
+    if found <= CONTRADICTED {
+        return None;
+    }
+    let proposal = structure::painted::propose(ink)?;
+    let reading = composed(asked, ink, &proposal);
+    let own = structure::painted::contradicted(ink, &reading, proposal.kind);
+    let keeps_pot = !reading.pots.is_empty() || other.pots.is_empty() || other.leaves.is_empty();
+    (keeps_pot && own < HALF_CONTRADICTED * found).then_some((reading, proposal.kind))
 }
 
 /// Makes the reading of a proposal.

@@ -162,6 +162,8 @@ pub struct DiscReading {
     pub radius: f64,
     /// The stroke it came from.
     pub source: Option<u32>,
+    /// The colour it was drawn in.
+    pub color: Option<[u8; 3]>,
 }
 
 /// A flower.

@@ -102,7 +102,8 @@ pub fn build_again(
     let ids = add_axes(&mut plant, &plans, map);
     let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
     let filled = reading.regions.iter().map(|r| r.color).chain(reading.fruits.iter().map(|f| f.color));
-    let colors = blades.map(|b| b.color).chain(filled.clone());
+    let discs = reading.flowers.iter().filter_map(|f| f.disc.as_ref()).map(|d| d.color);
+    let colors = blades.map(|b| b.color).chain(filled.clone()).chain(discs);
     let petals = reading.flowers.iter().flat_map(|f| &f.petals).filter_map(|p| p.color);
     let pots = reading.pots.iter().map(|p| p.color);
     let others = reading.leaves.iter().map(|l| l.color).chain(filled).chain(pots).flatten();

@@ -15,6 +15,7 @@
 //! | `faces`, `shape` | the areas that lines enclose together, and the form of outlines |
 //! | `readers` | plants that are recognised by the arrangement of their faces and lines |
 //! | `masses` | plants that are recognised by the areas that hatched and engraved lines cover |
+//! | `painted` | plants that are recognised by the colours of a painted picture |
 //! | `compose` | from the parts that a reader proposes to a reading |
 
 mod chains;
@@ -23,6 +24,7 @@ mod compose;
 mod faces;
 mod hidden;
 pub(crate) mod masses;
+pub(crate) mod painted;
 pub(crate) mod readers;
 mod score;
 mod shape;

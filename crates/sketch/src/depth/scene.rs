@@ -158,7 +158,7 @@ pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
 }
 
 fn is_white(c: [u8; 3]) -> bool {
-    c.into_iter().all(|x| x > 215)
+    c.into_iter().all(|x| x > 200)
 }
 
 /// Whether a colour is neither black, grey nor white.

@@ -34,7 +34,7 @@ fn daisy(centre: DVec2, n: u32, size: f64, first_source: u32) -> FlowerReading {
             blade(centre + d * (0.2 * size), centre + d * size, 0.45, first_source + k)
         })
         .collect();
-    let disc = Some(DiscReading { centre, radius: 0.2 * size, source: Some(first_source + n) });
+    let disc = Some(DiscReading { centre, radius: 0.2 * size, source: Some(first_source + n), color: None });
     FlowerReading { centre, petals, disc, stamens: vec![], bearer: None }
 }
 
@@ -574,7 +574,7 @@ fn any_flower() -> impl Strategy<Value = FlowerReading> {
         |(centre, petals, disc, stamens, bearer)| FlowerReading {
             centre,
             petals,
-            disc: disc.map(|(centre, radius)| DiscReading { centre, radius, source: None }),
+            disc: disc.map(|(centre, radius)| DiscReading { centre, radius, source: None, color: None }),
             stamens,
             bearer,
         },

@@ -10,41 +10,41 @@ use crate::raster::{Cells, around, distances, drawn, flood, largest, pieces, squ
 
 /// A wide part of the drawing.
 #[derive(Clone, Debug)]
-pub(super) struct Mass {
+pub(crate) struct Mass {
     /// Its outline, counter-clockwise.
-    pub(super) outline: Vec<DVec2>,
-    pub(super) shape: Shape,
+    pub(crate) outline: Vec<DVec2>,
+    pub(crate) shape: Shape,
     /// Radius of the largest circle in it.
-    pub(super) inner: f64,
+    pub(crate) inner: f64,
     /// How much its lines run away from its middle: 1 if all do, 0 if they run in all directions, -1 if they run round
     /// it.
-    pub(super) radial: f64,
+    pub(crate) radial: f64,
     /// Rows of the strokes that lie in it more than in other areas, the longest first.
-    pub(super) strokes: Vec<usize>,
+    pub(crate) strokes: Vec<usize>,
     /// Its longest line, from end to end.
-    pub(super) middle_line: Vec<DVec2>,
+    pub(crate) middle_line: Vec<DVec2>,
 }
 
 /// A slender part of the drawing.
 #[derive(Clone, Debug)]
-pub(super) struct Stem {
-    pub(super) points: Vec<DVec2>,
+pub(crate) struct Stem {
+    pub(crate) points: Vec<DVec2>,
     /// Rows of the strokes that lie in it more than in other areas, the longest first.
-    pub(super) strokes: Vec<usize>,
+    pub(crate) strokes: Vec<usize>,
 }
 
 /// The wide and the slender parts of a drawing.
 #[derive(Clone, Debug)]
-pub(super) struct Areas {
-    pub(super) masses: Vec<Mass>,
-    pub(super) stems: Vec<Stem>,
+pub(crate) struct Areas {
+    pub(crate) masses: Vec<Mass>,
+    pub(crate) stems: Vec<Stem>,
 }
 
 impl Areas {
     /// Finds the areas that lines cover, with the ball that leaves the most convex masses: a smaller one finds its way
     /// into organs, a larger one finds no way between them. `None` if the lines have no extent. Cost: linear in points,
     /// and a few hundred passes over a picture of [`MASSES`]`.along` cells a side.
-    pub(super) fn new(lines: &[&[DVec2]]) -> Option<Self> {
+    pub(crate) fn new(lines: &[&[DVec2]]) -> Option<Self> {
         let size = Cells::size_for(lines, MASSES.along)?;
         let widest = MASSES.balls.into_iter().fold(0.0, f64::max);
         let cells = Cells::new(lines, MASSES.along, (widest / size).ceil() + 2.0)?;
@@ -133,7 +133,7 @@ impl Mass {
     }
 
     /// Whether a point lies in it or within a distance of it.
-    pub(super) fn is_near(&self, p: DVec2, reach: f64) -> bool {
+    pub(crate) fn is_near(&self, p: DVec2, reach: f64) -> bool {
         geom::contains(&self.outline, p) || crate::blade::nearest_on_ring(&self.outline, p).1 < reach
     }
 }

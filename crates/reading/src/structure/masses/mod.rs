@@ -5,15 +5,16 @@
 //! a tangle otherwise.
 
 mod areas;
+mod profile;
 
-use base::ops;
 use geom::distance_to_polyline;
 use glam::DVec2;
 use ink::{Ink, StrokeClass};
 
 use super::readers::{Part, Proposal};
 use crate::{Kind, palette};
-use areas::{Areas, Mass, Stem};
+pub(crate) use areas::{Areas, Mass, Stem};
+pub(crate) use profile::Profile;
 
 /// Limits of areas and of the organs that they are. Lengths are in ink units (the drawing's diagonal is 1).
 struct MassLimits {
@@ -122,7 +123,7 @@ pub(crate) fn propose(ink: &Ink) -> Option<Proposal> {
             .map(|m| if bears(m, &heads) { Part::from_stalk(m) } else { leaf(m, &stems, &masses) }),
     );
     for head in &heads {
-        parts.extend(Profile::new(head).organs(head));
+        parts.extend(Profile::new(&head.outline, head.shape.middle).organs(&head.strokes));
     }
     let kind = if heads.len() > 1 { Kind::Flowers } else { Kind::Flower };
     Some(Proposal {
@@ -142,7 +143,7 @@ fn may_be_head(mass: &Mass) -> bool {
     shape.slenderness > MASSES.round
         && mass.radial > MASSES.radial
         && (shape.convexity > MASSES.whole
-            || shape.convexity > MASSES.convex && Profile::new(mass).lobes().is_some())
+            || shape.convexity > MASSES.convex && Profile::new(&mass.outline, shape.middle).lobes().is_some())
 }
 
 /// Whether a mass is the stem of a head: below it, narrower, and longish.
@@ -176,7 +177,8 @@ fn leaf(mass: &Mass, stems: &[Stem], masses: &[Mass]) -> Part {
     }
 }
 
-fn closed(outline: &[DVec2]) -> Vec<DVec2> {
+/// Returns an outline whose last point is its first one.
+pub(crate) fn closed(outline: &[DVec2]) -> Vec<DVec2> {
     outline.iter().chain(outline.first()).copied().collect()
 }
 
@@ -198,127 +200,6 @@ impl Part {
             strokes: mass.strokes.clone(),
         }
     }
-}
-
-/// Number of directions in which the radius of a head is measured.
-const DIRECTIONS: usize = 120;
-
-/// The radius of a head in all directions.
-struct Profile {
-    middle: DVec2,
-    radius: Vec<f64>,
-}
-
-impl Profile {
-    fn new(head: &Mass) -> Self {
-        let middle = head.shape.middle;
-        let mut radius = vec![0.0_f64; DIRECTIONS];
-        let step = ops::TAU / DIRECTIONS as f64;
-        for p in geom::resample(&closed(&head.outline), 0.01 * head.inner.max(1e-6)) {
-            let away = p - middle;
-            let turn = ops::atan2(away.y, away.x).rem_euclid(ops::TAU) / step;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "clamped to the directions"
-            )]
-            let row = (turn as usize).min(DIRECTIONS - 1);
-            radius[row] = radius[row].max(away.length());
-        }
-        Self { middle, radius }
-    }
-
-    fn mean(&self) -> f64 {
-        self.radius.iter().sum::<f64>() / DIRECTIONS as f64
-    }
-
-    /// Returns the directions in which it is narrowest between two lobes, in order; none if it has no lobes.
-    fn notches(&self) -> Vec<usize> {
-        let least = MASSES.prominent * self.mean();
-        let n = DIRECTIONS;
-        let Some(start) = (0..n).min_by(|&a, &b| self.radius[a].total_cmp(&self.radius[b])) else {
-            return Vec::new();
-        };
-        // From the narrowest direction round: a lobe ends where the radius has fallen far enough from its highest, and
-        // the next one begins where it has risen again.
-        let mut notches = vec![start];
-        let (mut low, mut high, mut rising) = (start, self.radius[start], true);
-        for k in (1..n).map(|k| (start + k) % n) {
-            let r = self.radius[k];
-            if rising {
-                high = high.max(r);
-                if r < high - least {
-                    (rising, low) = (false, k);
-                }
-            } else {
-                if r < self.radius[low] {
-                    low = k;
-                }
-                if r > self.radius[low] + least {
-                    notches.push(low);
-                    (rising, high) = (true, r);
-                }
-            }
-        }
-        notches
-    }
-
-    /// Returns the directions between its lobes, if it has those of a flower, of similar width.
-    fn lobes(&self) -> Option<Vec<usize>> {
-        let is_flower = |notches: &Vec<usize>| {
-            (MASSES.lobes[0]..=MASSES.lobes[1]).contains(&notches.len()) && are_even(notches)
-        };
-        Some(self.notches()).filter(is_flower)
-    }
-
-    /// Returns the petals and the disc of a head.
-    fn organs(&self, head: &Mass) -> Vec<Part> {
-        let lobes = self.lobes();
-        let hub = MASSES.disc[usize::from(lobes.is_none())] * self.mean();
-        let rays = || (0..MASSES.rays).map(|k| k * DIRECTIONS / MASSES.rays).collect();
-        let from: Vec<usize> = lobes.unwrap_or_else(rays);
-        let mut parts: Vec<Part> =
-            (0..from.len()).map(|k| self.petal(from[k], from[(k + 1) % from.len()], hub, head)).collect();
-        let disc: Vec<DVec2> = (0..=24)
-            .map(|k| self.middle + hub * direction(DIRECTIONS as f64 * f64::from(k) / 24.0))
-            .collect();
-        parts.push(Part {
-            points: disc,
-            class: StrokeClass::Disc,
-            root: None,
-            strokes: head.strokes.clone(),
-        });
-        parts
-    }
-
-    /// Returns the petal between two directions.
-    fn petal(&self, from: usize, to: usize, hub: f64, head: &Mass) -> Part {
-        let span = (to + DIRECTIONS - from - 1) % DIRECTIONS + 1;
-        let middle = direction(from as f64 + 0.5 * span as f64);
-        let root = self.middle + 0.9 * hub * middle;
-        let rim = (0..=span).map(|k| {
-            let t = 2.0 * k as f64 / span as f64 - 1.0;
-            let at = (from + k) % DIRECTIONS;
-            let r = self.radius[at] * (1.0 - MASSES.rounded * (t * t) * (t * t));
-            self.middle + r * direction(at as f64)
-        });
-        let points: Vec<DVec2> = core::iter::once(root).chain(rim).chain([root]).collect();
-        Part { points, class: StrokeClass::Blade, root: Some(root), strokes: head.strokes.clone() }
-    }
-}
-
-/// Whether lobes between these notches, in their order round a head, are of similar width.
-fn are_even(notches: &[usize]) -> bool {
-    let next = notches.iter().cycle().skip(1);
-    let widths = notches.iter().zip(next).map(|(a, b)| (b + DIRECTIONS - a - 1) % DIRECTIONS + 1);
-    let widest = widths.max().unwrap_or_default();
-    (widest * notches.len()) as f64 <= MASSES.uneven * DIRECTIONS as f64
-}
-
-/// Returns the unit vector of a direction, by its number.
-fn direction(k: f64) -> DVec2 {
-    let angle = (k + 0.5) * ops::TAU / DIRECTIONS as f64;
-    DVec2::new(ops::cos(angle), ops::sin(angle))
 }
 
 #[cfg(test)]

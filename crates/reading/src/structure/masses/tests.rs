@@ -1,3 +1,4 @@
+use base::ops;
 use ink::Drawing;
 
 use geom::polyline_length;
