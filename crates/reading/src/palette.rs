@@ -54,8 +54,13 @@ pub(crate) fn is_painted(ink: &Ink) -> bool {
     colors.clone().any(differs) && colors.any(is_green)
 }
 
-/// Whether a drawing was made in several colours, one of them green or bright.
+/// Whether a drawing has the colours of plants: several, one of them green, or bright ones without blue. Icons in shades of
+/// a theme's blue have none.
 pub(crate) fn is_coloured(ink: &Ink) -> bool {
+    let is_blue = |c: [u8; 3]| hue(c).1 > LIMITS.grey && LIMITS.blue.contains(&hue(c).0);
+    if !ink.strokes.iter().any(is_green_stroke) && ink.strokes.iter().filter_map(|s| s.color).any(is_blue) {
+        return false;
+    }
     let mut colors = ink.strokes.iter().filter_map(|s| s.color);
     let Some(first) = colors.clone().next() else { return false };
     let differs = |c: [u8; 3]| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > LIMITS.differs);

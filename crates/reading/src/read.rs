@@ -303,6 +303,8 @@ const FEWEST_FRONDS: usize = 2;
 /// A painted picture of which more than this share contradicts the reading by its colours is read by these
 /// (*drawings*).
 const CONTRADICTED: f64 = 0.2;
+/// A tree, palm or cactus that is more certain than this keeps its kind, whatever its colours (*drawings*).
+const SURE_OF_FORM: f64 = 0.6;
 /// A reading by colours contradicts less than this share of the picture that another reading does.
 const HALF_CONTRADICTED: f64 = 0.5;
 /// Most readings that are reported.
@@ -384,20 +386,16 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
-    let masses = by_masses(asked, (ink, classes), &reading, report);
-    let is_of_masses = masses.is_some();
-    if let Some((tried, again)) = masses {
-        (reading, kind) = (tried, again);
-    }
-    let colours = by_colours(asked, (ink, classes), (&reading, kind));
-    let is_of_colours = colours.is_some();
-    if let Some((tried, again)) = colours {
-        (reading, kind) = (tried, again);
-    }
+    let is_of_masses = replace(by_masses(asked, (ink, classes), &reading, report), (&mut reading, &mut kind));
+    let total = scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE);
+    let share = |kind: Kind| share_of(&scores, kind) / total;
+    let certainty = if sure.is_some() { 1.0 } else { share(kind) };
+    let colours = by_colours(asked, (ink, classes), (&reading, kind), certainty);
+    let is_of_colours = replace(colours, (&mut reading, &mut kind));
     // If a reader knows several bodies, they are not a single one.
     as_body(ink, kind, free && called.is_none() && !is_of_colours, &mut reading);
     let evidence = Evidence {
-        share: share_of(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
+        share: share(kind),
         undecided: glance::entropy(&glance.words),
         no_plant,
         strokes: ink.strokes.len(),
@@ -413,6 +411,15 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let word = called.or_else(|| glance::word(kind, &glance.words));
     reading.plants = vec![described(ink, kind, (evidence, readings), word)];
     reading
+}
+
+/// Replaces a reading and its kind by others, if there are any; returns whether there were.
+fn replace(found: Option<(Reading, Kind)>, (reading, kind): (&mut Reading, &mut Kind)) -> bool {
+    let is_found = found.is_some();
+    if let Some((other, again)) = found {
+        (*reading, *kind) = (other, again);
+    }
+    is_found
 }
 
 /// Returns the plant as it was shown before the last stroke, unless another reading is clear now. `how`: the way in which
@@ -856,13 +863,18 @@ fn by_masses(
 }
 
 /// Returns the plant that the colours of a painted picture are, and its kind, if another reading contradicts them more,
-/// and no class or kind was set by hand.
+/// and no class or kind was set by hand. `certainty`: of the kind of the other
+/// reading, 0 to 1.
 fn by_colours(
     asked: &Asked<'_>,
     (ink, classes): (&Ink, &[Classified]),
     (other, kind): (&Reading, Kind),
+    certainty: f64,
 ) -> Option<(Reading, Kind)> {
-    if asked.kind.is_some() || !asked.is_free(ink, classes) {
+    // Trees and cacti are drawn in any colour: their form says more.
+    let is_sure =
+        certainty > SURE_OF_FORM && matches!(kind, Kind::Tree | Kind::Conifer | Kind::Palm | Kind::Cactus);
+    if asked.kind.is_some() || !asked.is_free(ink, classes) || is_sure {
         return None;
     }
     let found = structure::painted::contradicted(ink, other, kind);

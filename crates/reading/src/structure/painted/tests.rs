@@ -167,3 +167,11 @@ fn colours_contradict_green_petals_and_red_crowns() {
     let wrong = read([stem, stem, OrganWord::Petal, crown, crown]);
     assert!(contradicted(&ink, &wrong, Kind::Tree) > 0.9);
 }
+
+#[test]
+fn an_icon_in_shades_of_blue_says_nothing_by_its_colours() {
+    let shades = [[40, 110, 250], [150, 190, 250]];
+    let lines: Vec<_> =
+        cherries().into_iter().enumerate().map(|(k, (line, _))| (line, shades[k % 2])).collect();
+    assert!(propose(&painted(&lines)).is_none());
+}
