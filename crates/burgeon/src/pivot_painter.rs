@@ -25,8 +25,8 @@ const FARTHEST_CM: f64 = 2048.0;
 const CM: f64 = 100.0;
 /// Shares of a piece of an axis at which it is looked up.
 const ALONG: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
-/// Vertices of a tube that say which wood it is.
-const VOTES: usize = 24;
+/// Vertices of a tube that say which wood it is: the last ones lie at its tip, which no other wood shares.
+const VOTES: usize = 6;
 
 /// A part of a plant that turns about a point of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,8 +227,7 @@ impl PivotPainter {
                 let (first, second) = if is_main { (main, other) } else { (other, main) };
                 nearest(first, v).or_else(|| nearest(second, v))
             };
-            let sample = piece.iter().step_by(piece.len().div_ceil(VOTES));
-            let element = most_frequent(sample.filter_map(vote));
+            let element = most_frequent(piece.iter().rev().take(VOTES).filter_map(vote));
             piece.iter().for_each(|&v| of[v] = Some(element));
         }
         of.into_iter().map(|element| element.unwrap_or(0)).collect()
