@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    Beside, CloudFacts, CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign,
+    Beside, BesideFile, CloudFacts, CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign,
     MAX_MODEL_BYTES, ModelFiles, ModelFormat, NoFile, Packing, PngCache, ReadDrawing, RobotFormat, Room,
     SideFile, StructureFormat, WriteError, decode_uri, gltf_files, model_files, names_beside, warn_of_wind,
     write_glb_packed, write_glb_with,
@@ -690,10 +690,20 @@ pub(crate) fn write_files(
     goal: Goal<'_>,
     files: Result<ModelFiles, WriteError>,
 ) -> Outcome {
-    let files = files.map_err(|e| output::write_failed(goal.path, e))?;
-    for file in &files.beside {
+    let ModelFiles { own, beside } = files.map_err(|e| output::write_failed(goal.path, e))?;
+    write_beside(outputs, goal, Ok(beside))?;
+    outputs.write(goal.by, goal.path, |out| Ok(out.write_all(&own)?))
+}
+
+/// Writes the companion files of a model.
+pub(crate) fn write_beside(
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
+    files: Result<Vec<BesideFile>, WriteError>,
+) -> Outcome {
+    for file in files.map_err(|e| output::write_failed(goal.path, e))? {
         let (by, path) = (goal.by_way_of(file.what), goal.sibling(&file.name));
         outputs.write(&by, &path, |out| Ok(out.write_all(&file.bytes)?))?;
     }
-    outputs.write(goal.by, goal.path, |out| Ok(out.write_all(&files.own)?))
+    Ok(())
 }

@@ -159,6 +159,7 @@ pub(crate) fn write(
         machine.cancel.check()?;
         let goal = Goal { by, path: &path, packing: export.packing(), ..form.goal };
         let in_levels = |outputs: &mut Outputs, levels: &[Level<'_>], cache: &mut PngCache| {
+            files::write_beside(outputs, goal, file.textures_beside(plant, model, &goal.stems().0))?;
             files::write_gltf(outputs, goal, gltf, |out| file.write_levels(plant, levels, cache, out))
         };
         let (written, write_ms) = machine.timed(|| match level {

@@ -89,7 +89,8 @@ export class Plant {
     return this.answer.view.for;
   }
 
-  /** What was asked for as `files`, such as `glb`; for a program also `lod1.glb` and so on. */
+  /** What was asked for as `files`, such as `glb`; for a program also `lod1.glb` and so on,
+   * or `pivots.exr` and `axes.png`. */
   get files(): Readonly<Record<string, Uint8Array>> {
     return this.answer.files;
   }

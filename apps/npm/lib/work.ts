@@ -14,7 +14,8 @@ interface Made {
   numbers(name: string): Float64Array;
   handles(name: string): Int32Array;
   texture(row: number): Uint8Array;
-  take_file(extension: string): Uint8Array;
+  file_names(): string[];
+  take_file(name: string): Uint8Array;
   free(): void;
 }
 
@@ -39,21 +40,16 @@ export interface Core {
 export function work(core: Core, asking: Asking, first: (answer: Answer) => void): Answer | string {
   try {
     if (asking.kind === 'schema') return core.schema(asking.asked);
-    return taken(make(core, asking, first), asking, wanted(asking));
+    return taken(make(core, asking, first), asking);
   } catch (e) {
     throw refusedBy(e);
   }
 }
 
-/** The files that are asked for. */
-function wanted({ asked }: Asking): string[] {
-  return (JSON.parse(asked) as { common: { files?: string[] } }).common.files ?? [];
-}
-
 /** Takes all that was made out of the memory of the core. */
-function taken(made: Made, asking: Asking, files: string[]): Answer {
+function taken(made: Made, asking: Asking): Answer {
   try {
-    return answer(made, asking, files);
+    return answer(made, asking);
   } finally {
     made.free();
   }
@@ -69,7 +65,7 @@ function grown(core: Core, asking: Asking, first: (answer: Answer) => void): Mad
       growing.free();
       throw e;
     }
-    if (coarse) first(taken(coarse, asking, []));
+    if (coarse) first(taken(coarse, asking));
   }
   return growing.whole();
 }
@@ -93,7 +89,7 @@ function make(core: Core, asking: Asking, first: (answer: Answer) => void): Made
   return made;
 }
 
-function answer(made: Made, { measures }: Asking, files: string[]): Answer {
+function answer(made: Made, { measures }: Asking): Answer {
   const view = JSON.parse(made.view()) as PlantView;
   const part = (level: number, i: number): PartArrays => ({
     positions: made.column(level, i, 'positions'),
@@ -129,7 +125,7 @@ function answer(made: Made, { measures }: Asking, files: string[]): Answer {
         flower: made.handles('organ_flower'),
       },
     },
-    files: Object.fromEntries(files.map((extension) => [extension, made.take_file(extension)])),
+    files: Object.fromEntries(made.file_names().map((name) => [name, made.take_file(name)])),
     measures: measures ? made.measures() : '',
   };
 }

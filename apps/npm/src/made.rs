@@ -128,6 +128,11 @@ impl Made {
             form.write_glb(&self.plant, levels, &mut cache, &mut bytes).map_err(failed)?;
             files.push((if k == 0 { "glb".to_owned() } else { format!("lod{k}.glb") }, bytes));
         }
+        if let Some(finest) = models.first() {
+            let beside = form.textures_beside(&self.plant, finest, "").map_err(failed)?;
+            let plain = |name: String| name.trim_start_matches('-').to_owned();
+            files.extend(beside.into_iter().map(|file| (plain(file.name), file.bytes)));
+        }
         Ok(files)
     }
 
@@ -349,9 +354,14 @@ impl Made {
         self.textures.get(row).map_or_else(Vec::new, |t| t.pixels.clone())
     }
 
-    /// Returns a requested file, by its extension.
-    pub fn take_file(&mut self, extension: &str) -> Vec<u8> {
-        let found = self.files.iter_mut().find(|(name, _)| name == extension);
+    /// Returns the names of the files: the extensions that were requested, and what a program wants beside them.
+    pub fn file_names(&self) -> Vec<String> {
+        self.files.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Returns a file by its name.
+    pub fn take_file(&mut self, wanted: &str) -> Vec<u8> {
+        let found = self.files.iter_mut().find(|(name, _)| name == wanted);
         found.map_or_else(Vec::new, |(_, bytes)| std::mem::take(bytes))
     }
 }
@@ -401,7 +411,9 @@ mod tests {
         let told = unity.view.engine.expect("told");
         assert_eq!((told.name.as_str(), told.set[0].as_str()), ("unity", "lods 3"));
         let three = made("three", Some(0), &["glb"]).expect("files");
-        assert_eq!(three.files.len(), 1, "what is asked wins");
+        assert_eq!(three.file_names(), ["glb"], "what is asked wins");
+        let levels = made("three", None, &["glb"]).expect("files");
+        assert_eq!(levels.file_names(), ["glb", "lod1.glb", "lod2.glb"]);
         assert!(String::from_utf8_lossy(&three.files[0].1).contains("EXT_meshopt_compression"));
     }
 

@@ -189,6 +189,15 @@ test('a budget is kept, and an impossible one names the least', async () => {
   await assert.rejects(grow('hazel', { triangles: 99 }), /triangles must be a whole number, 100 to/);
 });
 
+test('a file for a program arrives with those beside it', async () => {
+  const asked = { seed: 3, detail: 0.2, files: ['glb'], fields: { age: 3 } };
+  const three = await grow('hazel', { ...asked, engine: 'three' });
+  assert.deepEqual(Object.keys(three.files), ['glb', 'lod1.glb', 'lod2.glb']);
+  assert.ok(Object.values(three.files).every((file) => file.length > 1000));
+  const unreal = await grow('hazel', { ...asked, engine: 'unreal' });
+  assert.deepEqual(Object.keys(unreal.files), ['glb', 'pivots.exr', 'axes.png']);
+});
+
 test('a tree grows to a height or a diameter as by the command', async () => {
   const asked = { seed: 3, detail: 0.2, wind: false, measures: true };
   for (const [name, value] of [

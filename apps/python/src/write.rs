@@ -345,8 +345,9 @@ impl Writing {
         if file.is_one_file {
             let mut bytes = Vec::new();
             file.write_levels(held.plant(), &levels, &mut cache, &mut bytes)?;
-            let files = gltf_files(bytes, file.format, stem)?.named(format!("{stem}.{extension}"));
-            return Ok(Ok((files, line)));
+            let mut files = gltf_files(bytes, file.format, stem)?;
+            files.beside.extend(file.textures_beside(held.plant(), model, stem)?);
+            return Ok(Ok((files.named(format!("{stem}.{extension}")), line)));
         }
         let mut files = Vec::new();
         let models = std::iter::once(model).chain(&self.levels.lods);

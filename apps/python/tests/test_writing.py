@@ -160,6 +160,9 @@ def test_what_was_set_for_a_program_is_told(small, tmp_path):
     assert told[0] == "lods 3" and "wind" in told and not (tmp_path / "a-lod3.glb").exists()
     assert small.save(tmp_path / "b.glb", engine="unity", lods=0, pack="quantized")[0].startswith("names")
     assert small.save(tmp_path / "c.glb") == ()
+    told = small.save(tmp_path / "u.glb", engine="unreal")
+    assert any("Pivot Painter 2" in line for line in told)
+    assert {"u-pivots.exr", "u-axes.png"} <= {path.name for path in tmp_path.iterdir()}
     for how, words in [({"engine": "isaac"}, ".physics.usda, not .glb"), ({"engine": "maya"}, "unity")]:
         with pytest.raises(ValueError, match=words):
             small.save(tmp_path / "d.glb", **how)

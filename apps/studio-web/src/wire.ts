@@ -7,6 +7,7 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 export const CODES = {
   "age-beyond": ["name", "end", "age"],
   "archive": ["why"],
+  "assembly-levels": [],
   "ball-none": ["row", "mark", "rows"],
   "cancelled": [],
   "class-without-stroke": ["index"],
@@ -83,6 +84,7 @@ export const CODES = {
   "mesh-index": ["triangle", "vertex", "vertices"],
   "mesh-vertex": ["vertex"],
   "message": ["why"],
+  "no-assembly": ["why"],
   "no-branches": ["maker"],
   "no-clipboard": [],
   "no-drawing": [],
@@ -669,7 +671,7 @@ export type EngineAsk = {
 
 /** A setting that a program wants and the person left open. */
 export type EngineSet = {
-  /** The option (up, unit, lods, pack, wind), or what no option sets: levels, collider, wind-sets, names. */
+  /** The option (up, unit, lods, pack, wind), or what no option sets: levels, collider, pivots, skeleton, names, ... */
   name: string;
   /** Its value, empty for a switch; for what no option sets a few English words. */
   value: string;

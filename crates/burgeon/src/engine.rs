@@ -72,6 +72,8 @@ struct Row {
     wind: Air,
     /// Levels and shapes for collisions are nodes of one file; their names.
     nodes: Option<ShapeNames>,
+    /// Pivots are textures beside a file with nodes.
+    paints_pivots: bool,
     /// Materials and parts are named after the plant, because those of all files come into one folder.
     has_names: bool,
 }
@@ -164,6 +166,7 @@ impl Engine {
             packing: None,
             wind: Air::Still,
             nodes: None,
+            paints_pivots: false,
             has_names: false,
         };
         match self {
@@ -194,6 +197,7 @@ impl Engine {
                 axes: Some((UpAxis::Z, Unit::Centimetre)),
                 wind: Air::Sets,
                 nodes: Some(ShapeNames::Pieces("UCX_")),
+                paints_pivots: true,
                 has_names: true,
                 ..plain
             },
@@ -247,6 +251,11 @@ impl Engine {
             return None;
         }
         self.row().nodes
+    }
+
+    /// Returns whether textures of pivots lie beside a `.glb` with nodes ([`engine_textures`](crate::engine_textures)).
+    pub(crate) const fn paints_pivots(self) -> bool {
+        self.row().paints_pivots
     }
 
     pub(crate) const fn shape_names(self) -> Option<ShapeNames> {
@@ -321,6 +330,9 @@ impl Engine {
                 choice.has_wind = true;
                 set.push(EngineSetting::new("wind", ""));
                 set.push(EngineSetting::note("wind-sets", "wind as texture coordinates 2 to 5"));
+                if row.paints_pivots {
+                    set.push(EngineSetting::note("pivots", "textures for Pivot Painter 2, by coordinates 1"));
+                }
             }
             _ => {}
         }
@@ -397,7 +409,7 @@ mod tests {
         assert!(Engine::Unreal.has_assembly("usda") && set.contains("120 joints"), "{set}");
         let (choice, set) = settled(Engine::Unreal, "glb", open);
         assert_eq!((choice.up, choice.unit, choice.has_wind), (None, None, true));
-        assert!(set.contains("nodes UCX_"), "{set}");
+        assert!(set.contains("nodes UCX_") && set.contains("Pivot Painter 2"), "{set}");
         let swaying = ExportChoice { sways: true, ..open };
         let (choice, set) = settled(Engine::Godot, "gltf", swaying);
         assert!(!choice.has_wind && !Engine::Godot.has_nodes(&choice) && !set.contains("-colonly"), "{set}");

@@ -34,6 +34,7 @@ mod made;
 mod make;
 mod motion;
 mod opening;
+mod pivot_painter;
 mod refusal;
 mod report;
 mod robot;
@@ -61,7 +62,7 @@ pub use days::ScannedDays;
 pub use engine::{
     Engine, EngineSetting, ExportChoice, PrintedPlant, WrongEngineFile, name_after, print_plant,
 };
-pub use engine_nodes::write_engine_glb;
+pub use engine_nodes::{engine_textures, write_engine_glb};
 pub use evaluate::{Evaluator, FrontView, make_from_sketch, make_levels_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
 pub use leaves::{LeafOptions, make_leaf, make_leaf_of, make_shoot};

@@ -4,14 +4,14 @@ use std::io::{self, Write};
 
 use base::Report;
 use formats::{
-    ExportSpec, Level, ModelFormat, PngCache, Room, WriteError, model_files, write_glb_levels,
+    BesideFile, ExportSpec, Level, ModelFormat, PngCache, Room, WriteError, model_files, write_glb_levels,
     write_glb_rigged,
 };
 use mesh::Model;
 use plant::Plant;
 
 use crate::engine::Engine;
-use crate::engine_nodes::write_engine_glb;
+use crate::engine_nodes::{engine_textures, write_engine_glb};
 
 /// Form of the file of a model.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +69,22 @@ impl FileForm {
         let count = if self.is_one_file { levels.len() } else { 1 };
         let mut out = Counter::default();
         self.write_glb(plant, &levels[..count], cache, &mut out)?;
-        Ok(out.bytes)
+        let beside = self.textures_beside(plant, model, "model")?;
+        Ok(out.bytes + beside.iter().map(|file| file.bytes.len() as u64).sum::<u64>())
+    }
+
+    /// Returns the textures that a program wants beside a file of named nodes, which does not name them
+    /// ([`engine_textures`]). `model`: the finest level.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub fn textures_beside(
+        &self,
+        plant: &Plant,
+        model: &Model,
+        stem: &str,
+    ) -> Result<Vec<BesideFile>, WriteError> {
+        self.nodes.map_or_else(|| Ok(Vec::new()), |engine| engine_textures(engine, plant, model, stem))
     }
 
     /// Writes a `.glb`: the first of `levels` with joints if it sways, or else all of them.

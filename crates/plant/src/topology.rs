@@ -182,8 +182,10 @@ impl Plant {
     /// Returns the lowest and highest corner of the box around nodes and organs, roughly: an organ counts with its root
     /// and its reach. Positions that are not finite or absurdly far are left out; `None` if nothing remains.
     pub fn extent(&self) -> Option<(DVec3, DVec3)> {
+        // A shape is measured once, however many organs have it.
+        let reaches: Vec<f64> = self.shapes.iter().map(Shape::reach).collect();
         let organs = self.organs.iter().flat_map(|o| {
-            let reach = self.shapes.get(o.shape.index()).map_or(0.0, Shape::reach) * o.scale;
+            let reach = reaches.get(o.shape.index()).copied().unwrap_or(0.0) * o.scale;
             [o.frame.origin, o.frame.origin + o.frame.along * reach]
         });
         let points = self.nodes.position.iter().copied().chain(organs);

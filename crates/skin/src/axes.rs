@@ -505,6 +505,23 @@ fn rows(budget: &Budget, chain: &Chain, length: f64) -> f64 {
     if chain.stalk { (0.35 * rows).max(4.0) } else { rows }
 }
 
+/// Returns the axes of each tube of a plant's surface, each of which continues the one before. Cost: linear.
+///
+/// ```
+/// use glam::DVec3;
+/// use plant::{AxisKind, Plant};
+/// let mut p = Plant::default();
+/// let stem = p.add_axis(AxisKind::Stem, None, 1, &[DVec3::ZERO, DVec3::Y], None);
+/// let tip = p.axis(stem).node_ids().next_back();
+/// p.add_axis(AxisKind::Stem, tip, 2, &[DVec3::Y, DVec3::Y * 2.0], None);
+/// p.add_axis(AxisKind::Stem, tip, 3, &[DVec3::Y, DVec3::Y + DVec3::X], None);
+/// p.nodes.radius_m = vec![0.1; 6];
+/// assert_eq!(skin::tubes_of(&p).iter().map(Vec::len).collect::<Vec<_>>(), [2, 1]);
+/// ```
+pub fn tubes_of(plant: &Plant) -> Vec<Vec<AxisId>> {
+    chains(plant).0.into_iter().map(|chain| chain.axes).collect()
+}
+
 /// Groups axes that continue their bearer's tip; also returns the position of each axis.
 fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
     let n = plant.axes.len();

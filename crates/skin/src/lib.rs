@@ -67,6 +67,7 @@ mod traced;
 mod tube;
 mod wind;
 
+pub use self::axes::tubes_of;
 pub use self::spec::{BarkSpec, LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
 pub use coarser::{coarser, coarser_with, keep_out};

@@ -41,7 +41,7 @@ pub struct EngineAsk {
 /// A setting that a program wants and the person left open.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct EngineSet {
-    /// The option (up, unit, lods, pack, wind), or what no option sets: levels, collider, wind-sets, names.
+    /// The option (up, unit, lods, pack, wind), or what no option sets: levels, collider, pivots, skeleton, names, ...
     pub name: &'static str,
     /// Its value, empty for a switch; for what no option sets a few English words.
     pub value: String,
@@ -106,12 +106,14 @@ impl EngineAsk {
             (choice.has_wind, choice.sways) = (false, false);
         }
         let unpacked = self.packed == Some(false);
-        // Skeletons with leaves on their joints are the command's; levels of a scene are files of their own.
+        // One plant is a skeleton with leaves on its joints, or has nodes; levels of a scene are files of their own.
         let is_given = |name: &str| match name {
             "pack" => !unpacked,
-            "wind" | "sway" | "wind-sets" if calm => false,
-            "levels" | "collider" | "wind-sets" => !self.whole,
-            "skeleton" | "leaves" | "wind-file" | "physics" => false,
+            "wind" | "sway" | "wind-sets" | "pivots" if calm => false,
+            "levels" | "collider" | "wind-sets" | "pivots" | "skeleton" | "leaves" | "wind-file" => {
+                !self.whole
+            }
+            "physics" => false,
             _ => true,
         };
         set.retain(|s| is_given(s.name()));
@@ -155,6 +157,12 @@ mod tests {
             EngineAsk { whole: false, ..EngineAsk::new(Engine::Unity, ModelFormat::Glb) }.settle().unwrap();
         assert_eq!(words(&one), ["lods", "levels", "collider", "wind", "wind-sets", "names"]);
         assert_eq!(one.request.nodes(), Some(Engine::Unity));
+        let unreal =
+            EngineAsk { whole: false, ..EngineAsk::new(Engine::Unreal, ModelFormat::Usda) }.settle().unwrap();
+        assert_eq!(words(&unreal), ["up", "unit", "skeleton", "leaves", "wind-file", "names"]);
+        assert!(unreal.request.is_assembly() && unreal.request.levels == 1 && !unreal.request.wind);
+        let scene = EngineAsk::new(Engine::Unreal, ModelFormat::Usda).settle().unwrap();
+        assert!(!scene.request.is_assembly() && words(&scene) == ["up", "unit", "names"]);
         let calm = EngineAsk {
             wind: Some(false),
             levels: Some(2),

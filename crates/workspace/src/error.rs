@@ -5,8 +5,8 @@ use burgeon::formats::{DrawingError, DrawingFormat, Foreign, ModelError, ModelFo
 use burgeon::light::LightError;
 use burgeon::skin::SolidError;
 use burgeon::{
-    AllowanceError, HeightError, LightSourceError, SceneError, Slip, SplitError, Stopped, TreeError,
-    WrongEngineFile,
+    AllowanceError, AssemblyError, HeightError, LightSourceError, SceneError, Slip, SplitError, Stopped,
+    TreeError, WrongEngineFile,
 };
 
 /// Reason why a workspace refused a request; the workspace is unchanged.
@@ -82,6 +82,12 @@ pub enum WorkspaceError {
     /// Only trees have a diameter at breast height.
     #[error("only a grown tree has a diameter at breast height; give a height or a width")]
     NoGirth,
+    /// The plant cannot be a skeleton with leaves on its joints.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// A skeleton with leaves on its joints has one level.
+    #[error("Nanite makes coarser copies itself: export one level of detail, without a budget")]
+    AssemblyLevels,
     /// No body for a printer can be made.
     #[error(transparent)]
     Solid(#[from] SolidError),
@@ -195,6 +201,8 @@ burgeon::coded!(WorkspaceError {
     Self::Range { field, value, range } => "field-range" { field, range, value },
     Self::NoGirth => "no-girth" {},
     Self::PrintsOne => "prints-one" {},
+    Self::Assembly(why) => "no-assembly" { why },
+    Self::AssemblyLevels => "assembly-levels" {},
     Self::Solid(why) => "no-print" { why },
     Self::EngineFile(WrongEngineFile { wanted, given }) => "engine-file" { wanted = wanted.join(" / ."), given },
     Self::NowhereToStand => "nowhere-to-stand" {},

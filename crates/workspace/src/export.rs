@@ -221,6 +221,12 @@ impl ExportRequest {
         self.engine == Some(Engine::Print)
     }
 
+    /// Whether a skeleton with leaves on its joints is written.
+    pub(crate) fn is_assembly(&self) -> bool {
+        let ending = self.format.model().map_or("", ModelFormat::extension);
+        !self.whole && self.engine.is_some_and(|engine| engine.has_assembly(ending))
+    }
+
     /// Whether the level after the others is views from all sides.
     pub(crate) fn ends_far(&self) -> bool {
         self.impostor && self.format.holds(Room::Levels)
@@ -287,6 +293,15 @@ impl Workspace {
             self.printed = Some(PrintFigures::from_print(&made));
             return written(&made.model, format, "plant", &wanted.spec());
         }
+        if wanted.is_assembly() {
+            let (scene, document) = (&mut self.scene, self.editor.document());
+            let mut aside = wanted.dressed(scene, document, only);
+            let scene = aside.as_mut().unwrap_or(scene);
+            let made = made(scene, document, only, run)?;
+            let (files, triangles) = assembly(scene, &made, wanted, run)?;
+            self.written = Some(WrittenFigures { triangles: vec![triangles], ..WrittenFigures::default() });
+            return Ok(files);
+        }
         let (files, figures) = export(&mut self.scene, self.editor.document(), only, wanted, run)?;
         self.written = Some(figures);
         Ok(files)
@@ -318,6 +333,30 @@ pub(crate) fn print(
         Err(SolidError::Cancelled(_)) => Err(WorkspaceError::Cancelled),
         other => Ok(other?),
     }
+}
+
+/// Writes the only exported plant as a skeleton with leaves on its joints; returns its triangles, too.
+pub(crate) fn assembly(
+    scene: &SceneEvaluator,
+    made: &[&DocumentPlant],
+    wanted: &ExportRequest,
+    run: &Run<'_>,
+) -> Result<(Vec<NamedFile>, u64), WorkspaceError> {
+    if wanted.levels > 1 || wanted.allowance().is_any() {
+        return Err(WorkspaceError::AssemblyLevels);
+    }
+    let [plant] = made[..] else { return Err(WorkspaceError::NothingMade) };
+    let shown = scene.get(plant.id()).ok_or(WorkspaceError::NothingMade)?;
+    let (whole, layout) = shown.plant.zip(shown.owners).ok_or(WorkspaceError::NothingMade)?;
+    let mut made = match burgeon::assemble((whole, shown.model, layout), run) {
+        Err(_) if run.cancel.check().is_err() => return Err(WorkspaceError::Cancelled),
+        made => made?,
+    };
+    if wanted.named {
+        burgeon::name_after(&plant.settings().name, &mut made.model);
+    }
+    let files = formats::assembly_files(&made, "plant", &wanted.spec())?.named("plant.usda".to_owned());
+    Ok((files, shown.model.triangle_count() as u64))
 }
 
 fn export(
@@ -644,7 +683,12 @@ impl ExportLevels {
         if form.is_one_file && (levels.len() > 1 || form.nodes.is_some()) {
             let mut out = Vec::new();
             form.write_levels(&self.plant, &levels, &mut cache, &mut out)?;
-            return gltf_named(out, form.format, "plant");
+            let mut files = gltf_named(out, form.format, "plant")?;
+            if let Some(finest) = self.models.first() {
+                let beside = form.textures_beside(&self.plant, &finest.model, "plant")?;
+                files.extend(beside.into_iter().map(|file| (file.name, file.bytes)));
+            }
+            return Ok(files);
         }
         let mut files = Vec::new();
         for (k, level) in levels.iter().enumerate() {
@@ -674,7 +718,7 @@ mod tests {
     use burgeon::Coded;
 
     use super::*;
-    use crate::{Action, NewMaker, Workspace};
+    use crate::{Action, EngineAsk, NewMaker, Workspace};
 
     /// Writes a tulip, and returns its files and what they hold.
     fn tulip(wanted: &ExportRequest) -> Result<(Vec<NamedFile>, WrittenFigures), WorkspaceError> {
@@ -686,6 +730,24 @@ mod tests {
 
     fn code(wanted: &ExportRequest) -> &'static str {
         tulip(wanted).expect_err("it cannot be").details().code
+    }
+
+    #[test]
+    fn unreal_gets_a_skeleton_with_its_wind_or_a_mesh_with_its_pivots() {
+        let ask = |format, levels| {
+            let open = EngineAsk::new(Engine::Unreal, format);
+            let answer = EngineAsk { whole: false, levels, ..open }.settle().expect("a file of its own");
+            tulip(&answer.request)
+        };
+        let (files, figures) = ask(ModelFormat::Usda, None).unwrap();
+        let text = String::from_utf8_lossy(&files[0].1);
+        assert!(files[0].0 == "plant.usda" && text.contains("SkelRoot"), "{}", files[0].0);
+        assert!(files.iter().any(|(name, _)| name == "plant-wind.json") && figures.triangles[0] > 100);
+        let Err(refused) = ask(ModelFormat::Usda, Some(2)) else { panic!("Nanite makes levels") };
+        assert_eq!(refused.details().code, "assembly-levels");
+        let (files, _) = ask(ModelFormat::Glb, None).unwrap();
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["plant.glb", "plant-pivots.exr", "plant-axes.png"]);
     }
 
     #[test]

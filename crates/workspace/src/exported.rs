@@ -9,7 +9,7 @@ use burgeon::mesh::{Material, Model, Texture, TriMesh};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::export::{ExportLevels, Level, MOST_LEVELS, made, packed, print, scene_files, written};
+use crate::export::{ExportLevels, Level, MOST_LEVELS, assembly, made, packed, print, scene_files, written};
 use crate::export_preview::{ExportPreview, PrintFigures};
 use crate::view::GUEST;
 use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
@@ -122,7 +122,9 @@ impl Workspace {
             );
         }
         let at = Level::make(scene, &plants, (level, wanted), run)?;
-        let files = if one.is_joined() {
+        let files = if one.is_assembly() {
+            assembly(scene, &plants, wanted, run)?.0
+        } else if one.is_joined() {
             let joined = at.joined(document.name(), &plants, only.is_some());
             ExportLevels::new(scene, &plants, vec![joined]).files(&one)?
         } else {

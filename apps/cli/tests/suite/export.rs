@@ -141,7 +141,11 @@ fn an_engine_sets_what_it_wants_and_says_so() {
     let json = gltf(&dir.join("oak.glb"));
     assert_eq!([1, 2].map(|k| node(&json, k)), ["oak_mesh", "oak-colonly"]);
     made("unreal", "oak.glb", &[]);
-    assert_eq!(node(&gltf(&dir.join("oak.glb")), 2), "UCX_oak_mesh_00");
+    let json = gltf(&dir.join("oak.glb"));
+    assert_eq!(node(&json, 2), "UCX_oak_mesh_00");
+    let attributes = &json["meshes"][0]["primitives"][0]["attributes"];
+    assert_ne!(attributes["TEXCOORD_1"], attributes["TEXCOORD_0"], "texels of Pivot Painter 2");
+    assert!(dir.join("oak-pivots.exr").exists() && dir.join("oak-axes.png").exists());
     made("unity", "oak.glb", &["--sway", "--lods", "1"]);
     assert!(gltf(&dir.join("oak.glb"))["skins"].is_array() && dir.join("oak-lod1.glb").exists());
     let three = made("three", "oak.glb", &["--lods", "0"]);

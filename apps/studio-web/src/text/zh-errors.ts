@@ -24,6 +24,8 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'height-low': '这种植物不到胸高（1.3 米），量不了胸径：请给出高度',
   'height-obstacles': '有障碍物的树不能按高度或胸径生长，否则会碰到它们：请给出树龄',
   'no-girth': '只有生长的树才有胸径：请给出高度或宽度',
+  'no-assembly': '无法做成带骨骼的植物：{why}',
+  'assembly-levels': 'Nanite 会自行生成更粗的层级：请只导出一个细节层级，不设大小上限',
   'no-print': '无法做成打印用的实体：{why}',
   'engine-file': '这个程序要的是 .{wanted}，不是 .{given}',
   'clear-without-sun': '晴天的天空在太阳周围最亮：请说明太阳在哪里，给出方向或地点与日期',

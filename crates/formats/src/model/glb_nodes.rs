@@ -18,14 +18,16 @@ pub struct NamedNodes<'a> {
     pub levels: Vec<(String, &'a Model)>,
     /// Shapes for collisions, each with the name of its node; they have no material.
     pub shapes: Vec<(String, TriMesh)>,
+    /// For each level and each of its parts, texture coordinates of set 1 for every vertex; empty for those of set 0.
+    pub cells: Vec<Vec<Vec<[f32; 2]>>>,
 }
 
 /// Writes a GLB of named nodes: below the root one node for each level, whose mesh has a primitive for each part, and
 /// one for each shape. Materials and textures that levels share are written once.
 ///
 /// Wind columns of a mesh are texture coordinates, as importers drop the attributes `_WIND` and `_PIVOT`: set 2 has sway
-/// and limb, set 3 flutter and phase, set 4 x and y of the pivot in metres and set 5 its z and 1. Set 1 is set 0 again,
-/// because glTF counts sets without gaps.
+/// and limb, set 3 flutter and phase, set 4 x and y of the pivot in metres and set 5 its z and 1. Set 1 has
+/// [`NamedNodes::cells`], or is set 0 again, because glTF counts sets without gaps.
 ///
 /// # Errors
 /// As [`write_glb`](super::write_glb), for any of the models.
@@ -47,17 +49,19 @@ pub fn write_glb_nodes(
     let mut w = Writer::new(room);
     w.root(&nodes.name);
     let mut known: Vec<&Material> = Vec::new();
-    for (name, model) in &nodes.levels {
+    for (level, (name, model)) in nodes.levels.iter().enumerate() {
+        let cells = nodes.cells.get(level);
         let rows = model.materials.iter().map(|m| w.material(m, &mut known, cache));
         let rows: Vec<u32> = rows.collect::<Result<_, _>>()?;
         let mut primitives = Vec::with_capacity(model.parts.len());
-        for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
-            primitives.push(w.primitive(&part.mesh, Some(rows[part.material.index()]))?);
+        for (k, part) in model.parts.iter().enumerate().filter(|(_, p)| !p.mesh.positions.is_empty()) {
+            let cells = cells.and_then(|parts| parts.get(k)).map_or(&[][..], Vec::as_slice);
+            primitives.push(w.primitive(&part.mesh, cells, Some(rows[part.material.index()]))?);
         }
         w.named(name, primitives)?;
     }
     for (name, shape) in &nodes.shapes {
-        let primitive = w.primitive(shape, None)?;
+        let primitive = w.primitive(shape, &[], None)?;
         w.named(name, vec![primitive])?;
     }
     w.finish(out)
@@ -79,10 +83,15 @@ impl Writer {
         self.materials(&alone, cache)
     }
 
-    fn primitive(&mut self, mesh: &TriMesh, material: Option<u32>) -> Result<Primitive, WriteError> {
+    fn primitive(
+        &mut self,
+        mesh: &TriMesh,
+        cells: &[[f32; 2]],
+        material: Option<u32>,
+    ) -> Result<Primitive, WriteError> {
         let mut attributes = self.attributes(mesh, Winds::None)?;
         if mesh.wind.len() == mesh.positions.len() && mesh.pivots.len() == mesh.positions.len() {
-            self.wind_in_sets(mesh, &mut attributes)?;
+            self.wind_in_sets(mesh, cells, &mut attributes)?;
         }
         let is_cloud = mesh.triangles.is_empty();
         Ok(Primitive {
@@ -96,17 +105,24 @@ impl Writer {
     }
 
     /// Adds the columns of the wind as texture coordinates.
-    fn wind_in_sets(&mut self, mesh: &TriMesh, attributes: &mut Attributes) -> Result<(), WriteError> {
+    fn wind_in_sets(
+        &mut self,
+        mesh: &TriMesh,
+        cells: &[[f32; 2]],
+        attributes: &mut Attributes,
+    ) -> Result<(), WriteError> {
         let first = match attributes.uv {
             Some(uv) => uv,
             None => self.column("VEC2", &vec![[0.0; 2]; mesh.positions.len()], false)?,
         };
+        let second =
+            if cells.len() == mesh.positions.len() { self.column("VEC2", cells, false)? } else { first };
         let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
         let mut set = |pair: &dyn Fn(usize) -> [f32; 2]| {
             let rows: Vec<[f32; 2]> = (0..mesh.positions.len()).map(|k| pair(k).map(finite)).collect();
             self.column("VEC2", &rows, false)
         };
-        (attributes.uv, attributes.uv1) = (Some(first), Some(first));
+        (attributes.uv, attributes.uv1) = (Some(first), Some(second));
         attributes.uv2 = Some(set(&|k| [mesh.wind[k][0], mesh.wind[k][1]])?);
         attributes.uv3 = Some(set(&|k| [mesh.wind[k][2], mesh.wind[k][3]])?);
         attributes.uv4 = Some(set(&|k| [mesh.pivots[k][0], mesh.pivots[k][1]])?);

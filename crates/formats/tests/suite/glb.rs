@@ -503,7 +503,8 @@ fn levels_and_shapes_are_named_nodes_and_wind_is_in_sets_of_coordinates() {
     let levels = vec![("oak_LOD0".to_owned(), &fine), ("oak_LOD1".to_owned(), &coarse)];
     let shapes = vec![("oak_collider".to_owned(), shape)];
     let mut glb = Vec::new();
-    let nodes = NamedNodes { name: "oak".into(), levels, shapes };
+    let cells = vec![vec![vec![[0.25, 0.75]; fine.parts[0].mesh.positions.len()]]];
+    let nodes = NamedNodes { name: "oak".into(), levels, shapes, cells };
     write_glb_nodes(&nodes, &mut PngCache::new(), &mut glb).expect("writes");
     let j = json_of(&glb);
     let names: Vec<&str> =
@@ -513,7 +514,9 @@ fn levels_and_shapes_are_named_nodes_and_wind_is_in_sets_of_coordinates() {
     assert_eq!(j["materials"].as_array().map(Vec::len), Some(fine.materials.len()), "levels share materials");
     assert!(j["meshes"][2]["primitives"][0].get("material").is_none(), "a shape has none");
     let attributes = &j["meshes"][0]["primitives"][0]["attributes"];
-    assert_eq!(attributes["TEXCOORD_1"], attributes["TEXCOORD_0"]);
+    assert_eq!(floats(&glb, &j, &attributes["TEXCOORD_1"])[..2], [0.25, 0.75]);
+    let coarser = &j["meshes"][1]["primitives"][0]["attributes"];
+    assert_eq!(coarser["TEXCOORD_1"], coarser["TEXCOORD_0"], "without cells");
     let mesh = &fine.parts[0].mesh;
     let [pair, last] =
         [floats(&glb, &j, &attributes["TEXCOORD_2"]), floats(&glb, &j, &attributes["TEXCOORD_5"])];
