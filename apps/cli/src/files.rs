@@ -235,6 +235,11 @@ fn bytes_of(path: &Path, input: Input, limit: u64) -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Refuses the bytes of a file of another program, which is named.
+pub(crate) fn refuse_foreign(path: &Path, bytes: &[u8]) -> Outcome {
+    Foreign::sniff_no_drawing(bytes).map_or(Ok(()), |foreign| Err(Failure::bad_file(path, foreign)))
+}
+
 /// Reads the text of a small file, such as settings: at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Outcome<String> {
     text_of(path, open_bytes(path)?)
@@ -243,9 +248,7 @@ pub(crate) fn read_text(path: &Path) -> Outcome<String> {
 /// Reads as [`read_text`] does, from a file that is open already.
 pub(crate) fn text_of(path: &Path, input: Input) -> Outcome<String> {
     let bytes = bytes_of(path, input, LIMITS.text)?;
-    if let Some(foreign) = Foreign::sniff_no_drawing(&bytes) {
-        return Err(Failure::bad_file(path, foreign));
-    }
+    refuse_foreign(path, &bytes)?;
     String::from_utf8(bytes).map_err(|e| {
         let after = e.utf8_error().valid_up_to();
         Failure::bad_file(

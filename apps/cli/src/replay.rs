@@ -67,6 +67,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     }
     let path = args.record.as_path();
     let bytes = files::read_bytes(path, LIMITS.side_file)?;
+    files::refuse_foreign(path, &bytes)?;
     let record = GestureRecord::read(&bytes).map_err(|e| Failure::bad_file(path, e))?;
     let mut workspace = Workspace::default();
     let mut film = args.film.as_ref().map(|_| (Film::default(), Extent::new()));

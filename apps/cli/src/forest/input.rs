@@ -34,6 +34,7 @@ pub(super) fn read(args: &ForestArgs, machine: &Machine, told: &mut Report) -> O
 
 fn inventory(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome<(Stand, StandReport)> {
     let bytes = files::read_bytes(&args.input, MOST_BYTES)?;
+    files::refuse_foreign(&args.input, &bytes)?;
     let stand = &args.stand;
     let spec = InventorySpec {
         crs: stand.crs,

@@ -253,6 +253,22 @@ mod tests {
         }
     }
 
+    /// Replays the kept inputs of the fuzz target, which `burgeon-workspace` cannot call.
+    #[test]
+    fn every_kept_request_is_refused_or_sound_as_its_name_says() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/kept/request");
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).expect("a folder of the repository") {
+            let path = entry.expect("an entry").path();
+            let head = std::fs::read(&path).expect("a file of the repository");
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            sound(&head);
+            assert_eq!(asked(&head, &hosts()).is_err(), name.starts_with("bad-"), "{name}");
+            count += 1;
+        }
+        assert!(count > 20, "{count} kept requests");
+    }
+
     #[test]
     fn a_plain_request_is_understood() {
         let head =

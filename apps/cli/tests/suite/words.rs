@@ -232,8 +232,10 @@ fn files_of_other_programs_are_named() {
                 uses.push(vec!["grow", &file, "-o", "x.glb"]);
                 uses.push(vec!["bloom", "fit", &file, "-o", "x.json"]);
                 uses.push(vec!["shape", "grass", "--edits", &file, "-o", "x.glb"]);
+                uses.push(vec!["replay", &file, "--png", "x.png"]);
             }
             if end == "csv" {
+                uses.push(vec!["forest", &file, "-o", "stand"]);
                 uses.push(vec!["leaf", &file, "-o", "x.glb"]);
             }
             if is_cloud || end == own {
@@ -261,6 +263,27 @@ fn files_of_other_programs_are_named() {
             assert!(bad(&at, &["sketch", "given.burgeon", "-o", "x.glb"]).contains(name));
         }
     }
+}
+
+/// What is packed as gzip is unpacked where it is a drawing, and named where it is not.
+#[test]
+fn a_packed_file_that_is_no_drawing_is_named_as_packed() {
+    let at = folder("words-packed");
+    // As `gzip` writes them: no compression, then the sum and length of the text.
+    let packed = |text: &[u8], sum: u32| {
+        let length = u16::try_from(text.len()).unwrap();
+        let head =
+            [&b"\x1f\x8b\x08\0\0\0\0\0\0\x03\x01"[..], &length.to_le_bytes(), &(!length).to_le_bytes()];
+        [&head.concat(), text, &sum.to_le_bytes(), &u32::from(length).to_le_bytes()].concat()
+    };
+    fs::write(at.join("cloud.xyz.gz"), packed(b"0 0 0\n1 1 1\n", 0x7a6a_bf90)).unwrap();
+    fs::write(at.join("picture.svgz"), packed(b"<svg/>", 0xacb9_fb49)).unwrap();
+    for args in [&["sketch", "cloud.xyz.gz", "-o", "x.glb"][..], &["info", "cloud.xyz.gz"]] {
+        let said = bad(&at, args);
+        assert!(said.contains("compressed with gzip; unpack it"), "{said}");
+    }
+    let said = bad(&at, &["sketch", "picture.svgz", "-o", "x.glb"]);
+    assert!(said.contains("there is no stroke in it"), "{said}");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use laz::LazVlr;
 use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor};
 
 use super::las_parts::{Bytes, Record, Rows, packing};
-use super::laz_limits::Packed;
+use super::laz_limits::{Packed, why_packed};
 use super::sink::Sink;
 use super::{CloudFormat, broken_las as fail, too_many};
 use crate::error::CloudError;
@@ -102,7 +102,7 @@ impl<'a> Copc<'a> {
         report: &mut Report,
     ) -> Result<(), CloudError> {
         let cells = self.cells()?;
-        let vlr = LazVlr::read_from(self.how).map_err(|e| fail(0, e.to_string()))?;
+        let vlr = LazVlr::read_from(self.how).map_err(|e| fail(0, why_packed(&e)))?;
         let levels = cells.last().map_or(0, |c| c.level) + 1;
         let points_to = |level: i32| -> usize {
             let within = cells.iter().filter(|c| c.level <= level);
@@ -141,9 +141,11 @@ impl<'a> Copc<'a> {
         let (bytes, record, how) = (&self.bytes[..end], self.record, self.how);
         Packed { bytes, data_at: cell.at, record, count: cell.points, how }.check_cell(vlr, cell.points)?;
         let mut unpacker = LayeredPointRecordDecompressor::new(Cursor::new(&bytes[cell.at..]));
-        unpacker.set_fields_from(vlr.items()).map_err(|e| broken(e.to_string()))?;
+        unpacker.set_fields_from(vlr.items()).map_err(|e| broken(why_packed(&e).into()))?;
         for k in 0..cell.points {
-            unpacker.decompress_next(row).map_err(|e| broken(format!("point {k} of a cell: {e}")))?;
+            unpacker
+                .decompress_next(row)
+                .map_err(|e| broken(format!("point {k} of a cell: {}", why_packed(&e.into()))))?;
             take(row)?;
         }
         Ok(())

@@ -39,6 +39,9 @@ fn broken(e: &::e57::Error) -> CloudError {
             FileFault::Truncated { inside: "its pages".into() },
         );
     }
+    if says("invalid checksum") {
+        return fail(Place::File, "the bytes of a page do not agree with its checksum");
+    }
     fail(Place::File, texts.pop().unwrap_or_default())
 }
 

@@ -9,7 +9,7 @@ use super::las_parts::packing;
 use super::las_parts::{Bytes, Record, Rows, records};
 use super::las_system::System;
 #[cfg(feature = "laz")]
-use super::laz_limits::Packed;
+use super::laz_limits::{Packed, why_packed};
 use super::sink::Sink;
 use super::{CloudFormat, MAX_POINTS, broken_las as fail, too_many};
 use crate::error::{CloudError, FileFault, Place};
@@ -164,12 +164,13 @@ fn unpack(
 ) -> Result<(), CloudError> {
     let broken = |what: String| fail(data_at, what);
     let how = packing(records, data_at)?;
-    let vlr = laz::LazVlr::read_from(how).map_err(|e| broken(e.to_string()))?;
+    let vlr = laz::LazVlr::read_from(how).map_err(|e| broken(why_packed(&e).into()))?;
     let packed = Packed { bytes, data_at, record, count, how };
     let end = packed.check(&vlr)?;
     let mut source = std::io::Cursor::new(bytes);
     source.set_position(data_at as u64);
-    let mut unpacker = laz::LasZipDecompressor::new(source, vlr).map_err(|e| broken(e.to_string()))?;
+    let mut unpacker =
+        laz::LasZipDecompressor::new(source, vlr).map_err(|e| broken(why_packed(&e).into()))?;
     // Decoding does not start if the file claims more than it holds: memory is taken before the bytes are read.
     let begins = unpacker.get().position();
     *unpacker.get_mut() = std::io::Cursor::new(&bytes[..end]);
@@ -178,7 +179,7 @@ fn unpack(
     for k in 0..count {
         unpacker
             .decompress_one(&mut row)
-            .map_err(|e| broken(format!("point {k} cannot be unpacked: {e}")))?;
+            .map_err(|e| broken(format!("point {k} cannot be unpacked: {}", why_packed(&e.into()))))?;
         rows.take(&row, sink)?;
     }
     Ok(())

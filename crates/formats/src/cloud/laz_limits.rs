@@ -2,7 +2,7 @@
 
 use super::broken_las as fail;
 use crate::error::CloudError;
-use laz::{LazItem, LazItemType, LazVlr};
+use laz::{LasZipError, LazItem, LazItemType, LazVlr};
 
 /// Limits of what a compressed scan may claim.
 struct LazLimits {
@@ -14,6 +14,16 @@ struct LazLimits {
 }
 
 const LIMITS: LazLimits = LazLimits { points_a_byte: 2_000, items: 8 };
+
+/// Says in words of our own why a compressed scan is not unpacked.
+pub(super) fn why_packed(error: &LasZipError) -> &'static str {
+    match error {
+        LasZipError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => "the bytes end too early",
+        LasZipError::IoError(_) => "the bytes are broken",
+        LasZipError::MissingChunkTable => "its table of chunks is missing",
+        _ => "it is packed in an unknown way",
+    }
+}
 
 /// Bytes before the first chunk of points; they hold the position of the chunk table.
 const TABLE_PLACE: usize = 8;
@@ -129,7 +139,7 @@ impl Packed<'_> {
         let mut source = std::io::Cursor::new(self.bytes);
         source.set_position(self.data_at as u64);
         let table = laz::laszip::ChunkTable::read_from(source, vlr)
-            .map_err(|e| self.broken(format!("its table of chunks: {e}")))?;
+            .map_err(|e| self.broken(format!("its table of chunks: {}", why_packed(&e))))?;
         let held = table.into_iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.point_count));
         if held < self.count as u64 {
             return Err(self.broken(format!("{} points are announced, {held} are in its chunks", self.count)));

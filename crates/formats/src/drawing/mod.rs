@@ -96,7 +96,13 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
             advice: "simplify the drawing or split it into several files",
         }));
     }
-    let text = text_of(unpacked(bytes).map_err(file)?).map_err(file)?;
+    let is_packed = bytes.starts_with(&GZIP);
+    let bytes = unpacked(bytes).map_err(file)?;
+    // Any file may be packed so, and only pictures (`.svgz`) are told by that alone.
+    if is_packed && format == DrawingFormat::Svg && !begins_as_markup(&bytes) {
+        return Err(file(FileFault::Foreign(Foreign::Gzip)));
+    }
+    let text = text_of(bytes).map_err(file)?;
     if text.trim().is_empty() {
         return Err(file(FileFault::Empty));
     }
@@ -119,9 +125,19 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
     Ok(ReadDrawing { drawing, warnings: report.warnings })
 }
 
+/// First bytes of a file that is packed as gzip.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// Returns whether a text begins with a tag, in UTF-8; of UTF-16, whether it says so.
+fn begins_as_markup(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+    bytes.trim_ascii_start().starts_with(b"<")
+        || [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|m| bytes.starts_with(m))
+}
+
 /// Returns the bytes of a file: unpacked if it is packed as gzip (`.svgz`), else as they are.
 fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, FileFault> {
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
+    if !bytes.starts_with(&GZIP) {
         return Ok(bytes);
     }
     let mut out = Vec::new();

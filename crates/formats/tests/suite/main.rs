@@ -1,5 +1,7 @@
 //! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-formats --test suite MODULE::`.
 
+#[path = "../../../base/tests/effort/mod.rs"]
+mod effort;
 #[path = "../../../base/tests/missing/mod.rs"]
 mod missing;
 
