@@ -11,6 +11,8 @@ use super::masses::{Areas, closed};
 use crate::rows::OrganWord;
 use crate::{Kind, Reading, palette};
 
+/// All hues, degrees.
+const FULL_CIRCLE: f64 = 360.0;
 /// Number of places round an area at which the width of its rim is measured.
 const ROUND: f64 = 96.0;
 
@@ -166,7 +168,7 @@ impl<'a> Painted<'a> {
             return true;
         };
         let apart = (a.0 - b.0).abs();
-        apart.min(360.0 - apart) < PAINTED.hue
+        apart.min(FULL_CIRCLE - apart) < PAINTED.hue
     }
 
     /// Whether a line lies in an area.
@@ -230,7 +232,7 @@ fn is_behind(area: &Area, all: &[Area]) -> bool {
     let brights = || all.iter().filter(|a| a.tone == Tone::Bright);
     let inner: f64 = brights().filter(|a| a.lies_in(area)).map(|a| a.shape.area).sum();
     let whole: f64 = brights().map(|a| a.shape.area).sum();
-    area.tone == Tone::Green && inner > 0.5 * whole && inner > 0.2 * area.shape.area
+    area.tone == Tone::Green && inner > PAINTED.covered * whole && inner > PAINTED.covers * area.shape.area
 }
 
 /// Whether an area is a vein or a gloss on a green one: nearly white, or slender.

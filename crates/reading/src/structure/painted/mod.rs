@@ -53,6 +53,10 @@ struct PaintedLimits {
     rim_range: [usize; 2],
     /// and the least ratio between them.
     rim_even: f64,
+    /// A green area lies behind a flower if more than this share of all that is bright lies in it,
+    covered: f64,
+    /// and covers more than this share of it.
+    covers: f64,
     /// A picture with less wood than this share of the painted area has no trunk.
     trunk: f64,
     /// A line of wood that is longer than this may be one.
@@ -106,6 +110,8 @@ const PAINTED: PaintedLimits = PaintedLimits {
     rim: 0.5,
     rim_range: [10, 85],
     rim_even: 0.42,
+    covered: 0.5,
+    covers: 0.2,
     trunk: 0.02,
     trunk_line: 0.1,
     fruit_convex: 0.9,
