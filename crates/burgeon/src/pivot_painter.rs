@@ -7,7 +7,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use formats::{Beside, BesideFile, WriteError, half_of, write_exr, write_png};
+use formats::{Beside, BesideFile, WriteError, half_bits, write_exr, write_png};
 use geom::KdTree;
 use glam::DVec3;
 use mesh::{MaterialKind, Model, Part};
@@ -88,7 +88,7 @@ impl Division<'_> {
     }
 
     /// Returns the element of the wood at a node.
-    fn at(&self, node: NodeId) -> Option<u32> {
+    fn element_at(&self, node: NodeId) -> Option<u32> {
         let axis = self.plant.nodes.axis.get(node.index())?;
         self.of_axis.get(axis.index()).copied().flatten()
     }
@@ -98,7 +98,7 @@ impl Division<'_> {
         for tube in skin::tubes_of(self.plant) {
             let Some(&first) = tube.first() else { continue };
             let axis = self.plant.axis(first);
-            let host = axis.bearer.and_then(|bearer| self.at(bearer));
+            let host = axis.bearer.and_then(|bearer| self.element_at(bearer));
             let element = match host {
                 Some(host) if !self.has_own(axis, host) => host,
                 _ => {
@@ -125,7 +125,7 @@ impl Division<'_> {
         for organ in self.plant.organs.iter().filter(|o| !matches!(o.kind, OrganKind::Thorn | OrganKind::Pot))
         {
             let key = bits(organ.frame.origin.as_vec3().to_array());
-            let bearer = organ.bearer.and_then(|node| self.at(node));
+            let bearer = organ.bearer.and_then(|node| self.element_at(node));
             let on_stalk = organ.bearer.and_then(|node| self.plant.nodes.axis.get(node.index()));
             let on_stalk = on_stalk.is_some_and(|axis| self.plant.axis(*axis).kind == AxisKind::Petiole);
             let element = match (bearer, rooted.get(&key)) {
@@ -204,12 +204,12 @@ impl PivotPainter {
 
     /// Returns the texture coordinates of the vertices of each part of a model of the plant, at any level of detail.
     pub(crate) fn cells(&self, model: &Model) -> Vec<Vec<[f32; 2]>> {
-        let parts = model.parts.iter().map(|part| self.of_part(model, part));
+        let parts = model.parts.iter().map(|part| self.part_elements(model, part));
         parts.map(|rows| rows.into_iter().map(|element| self.cell(element)).collect()).collect()
     }
 
     /// Returns the element of each vertex of a part.
-    fn of_part(&self, model: &Model, part: &Part) -> Vec<u32> {
+    fn part_elements(&self, model: &Model, part: &Part) -> Vec<u32> {
         use MaterialKind::{Bark, Root, Stem, YoungBark};
         let mesh = &part.mesh;
         let is_wood = matches!(model.material(part).kind, Bark | YoungBark | Stem | Root);
@@ -236,7 +236,7 @@ impl PivotPainter {
     /// Returns for each element the direction from its pivot to the middle of its vertices, and how far they go along it,
     /// metres.
     fn spans(&self, model: &Model) -> Vec<(DVec3, f64)> {
-        let parts: Vec<Vec<u32>> = model.parts.iter().map(|part| self.of_part(model, part)).collect();
+        let parts: Vec<Vec<u32>> = model.parts.iter().map(|part| self.part_elements(model, part)).collect();
         let vertices = || {
             let parts = model.parts.iter().zip(&parts);
             parts.flat_map(|(part, of)| {
@@ -266,7 +266,7 @@ impl PivotPainter {
         let mut pivots = vec![[0_u16; 4]; columns * rows];
         let mut axes = vec![0_u8; 4 * columns * rows];
         for (row, (element, (way, extent))) in self.elements.iter().zip(self.spans(model)).enumerate() {
-            let [x, y, z] = in_unreal(element.pivot * CM).as_vec3().to_array().map(half_of);
+            let [x, y, z] = in_unreal(element.pivot * CM).as_vec3().to_array().map(half_bits);
             pivots[row] = [x, y, z, index_bits(element.parent)];
             let [r, g, b] = in_unreal(way).to_array().map(|x| byte(0.5 + 0.5 * x));
             axes[4 * row..4 * row + 4].copy_from_slice(&[r, g, b, byte(extent * CM / FARTHEST_CM).max(1)]);

@@ -36,7 +36,7 @@ pub use leaves::{
 pub use model::{
     Assembly, AssemblyJoint, BesideFile, BoundCopies, ExportSpec, FileStems, Level, MAX_MODEL_BYTES,
     ModelFiles, Morph, NamedNodes, NoFile, ObjFiles, Packing, PngCache, Resolver, SideFile, UsdFiles,
-    WindGroup, assembly_files, decode_uri, file_name, gltf_files, half_of, model_files, names_beside,
+    WindGroup, assembly_files, decode_uri, file_name, gltf_files, half_bits, model_files, names_beside,
     no_files, obj_files, read_model, read_picture, usd_files, warn_of_wind, write_exr, write_glb,
     write_glb_joined, write_glb_levels, write_glb_morph, write_glb_nodes, write_glb_packed, write_glb_rigged,
     write_glb_scene, write_glb_with, write_model, write_ply, write_png, write_stl,

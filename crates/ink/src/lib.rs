@@ -36,5 +36,5 @@ pub use classify::{
 pub use clean::{Ink, InkMap, InkStroke, clean, clean_again};
 pub use drawing::{Drawing, InkSample, Layer, Stroke, StrokeMode};
 pub use edit::{StrokePull, StrokeTurn, cut, joined, rubbed, smoothed};
-pub use normal::{Change, Figure, Fill, Normal, hue, normalise};
+pub use normal::{Change, Figure, Fill, Normal, hue, hues_apart, normalise};
 pub use subjects::Subjects;

@@ -48,10 +48,15 @@ const LIMITS: PaletteLimits = PaletteLimits {
 
 /// Whether a drawing was made in several colours, one of them green.
 pub(crate) fn is_painted(ink: &Ink) -> bool {
+    has_several_colours(ink) && ink.strokes.iter().any(is_green_stroke)
+}
+
+/// Whether two strokes of a drawing differ in colour.
+fn has_several_colours(ink: &Ink) -> bool {
     let mut colors = ink.strokes.iter().filter_map(|s| s.color);
-    let Some(first) = colors.clone().next() else { return false };
+    let Some(first) = colors.next() else { return false };
     let differs = |c: [u8; 3]| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > LIMITS.differs);
-    colors.clone().any(differs) && colors.any(is_green)
+    colors.any(differs)
 }
 
 /// Whether a drawing has the colours of plants: several, one of them green, or bright ones without blue. Icons in shades of
@@ -61,10 +66,7 @@ pub(crate) fn is_coloured(ink: &Ink) -> bool {
     if !ink.strokes.iter().any(is_green_stroke) && ink.strokes.iter().filter_map(|s| s.color).any(is_blue) {
         return false;
     }
-    let mut colors = ink.strokes.iter().filter_map(|s| s.color);
-    let Some(first) = colors.clone().next() else { return false };
-    let differs = |c: [u8; 3]| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > LIMITS.differs);
-    colors.any(differs) && ink.strokes.iter().any(|s| is_green_stroke(s) || is_bright_stroke(s))
+    has_several_colours(ink) && ink.strokes.iter().any(|s| is_green_stroke(s) || is_bright_stroke(s))
 }
 
 /// Whether a stroke is green: by its hue, and neither grey nor nearly black.

@@ -877,13 +877,14 @@ fn by_colours(
     if asked.kind.is_some() || !asked.is_free(ink, classes) || is_sure {
         return None;
     }
-    let found = structure::painted::contradicted(ink, other, kind);
+    let colours = structure::painted::Colours::new(ink)?;
+    let found = colours.contradicted(other, kind);
     if found <= CONTRADICTED {
         return None;
     }
     let proposal = structure::painted::propose(ink)?;
     let reading = composed(asked, ink, &proposal);
-    let own = structure::painted::contradicted(ink, &reading, proposal.kind);
+    let own = colours.contradicted(&reading, proposal.kind);
     let keeps_pot = !reading.pots.is_empty() || other.pots.is_empty() || other.leaves.is_empty();
     (keeps_pot && own < HALF_CONTRADICTED * found).then_some((reading, proposal.kind))
 }

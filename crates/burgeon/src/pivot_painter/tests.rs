@@ -226,6 +226,6 @@ fn an_index_is_a_normal_number_of_16_bits() {
     for index in [0_u32, 1, 1023, 1024, 2047, 2049, 29_999] {
         let bits = index_bits(index);
         let number = float_of(bits.to_le_bytes());
-        assert!(number.is_normal() && half_of(number) == bits, "{index}: {number}");
+        assert!(number.is_normal() && half_bits(number) == bits, "{index}: {number}");
     }
 }

@@ -10,7 +10,7 @@ const MAGIC: [u8; 8] = [0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
 const HALF: i32 = 1;
 
 /// Writes a picture as EXR with the channels R, G, B and A of 16 bits each, row by row from the top; `pixels` are the
-/// bits of each number ([`half_of`]).
+/// bits of each number ([`half_bits`]).
 ///
 /// Guaranteed: the same pixels give the same bytes, and every bit of a number is kept.
 ///
@@ -19,7 +19,7 @@ const HALF: i32 = 1;
 ///
 /// ```
 /// let mut exr = Vec::new();
-/// formats::write_exr(1, 1, &[[formats::half_of(1.0), 0, 0, 0x3c00]], &mut exr)?;
+/// formats::write_exr(1, 1, &[[formats::half_bits(1.0), 0, 0, 0x3c00]], &mut exr)?;
 /// assert_eq!((&exr[..4], &exr[exr.len() - 2..]), (&[0x76, 0x2f, 0x31, 0x01][..], &[0x00, 0x3c][..]));
 /// # Ok::<(), formats::WriteError>(())
 /// ```
@@ -92,10 +92,10 @@ fn header(columns: i32, rows: i32) -> Vec<u8> {
 /// the greatest of its sign, and what is not a number 0.
 ///
 /// ```
-/// assert_eq!([0.0, 1.0, -2.0, 65504.0, 1e9].map(formats::half_of), [0, 0x3c00, 0xc000, 0x7bff, 0x7bff]);
-/// assert_eq!([6.0e-8, 2.9e-8, 1.0 / 3.0].map(formats::half_of), [1, 0, 0x3555]);
+/// assert_eq!([0.0, 1.0, -2.0, 65504.0, 1e9].map(formats::half_bits), [0, 0x3c00, 0xc000, 0x7bff, 0x7bff]);
+/// assert_eq!([6.0e-8, 2.9e-8, 1.0 / 3.0].map(formats::half_bits), [1, 0, 0x3555]);
 /// ```
-pub fn half_of(x: f32) -> u16 {
+pub fn half_bits(x: f32) -> u16 {
     const GREATEST: f32 = 65_504.0;
     /// Bits of 2^-14, below which steps are 2^-24.
     const NORMAL: u32 = 0x3880_0000;

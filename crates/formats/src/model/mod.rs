@@ -34,7 +34,7 @@ use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
 pub(crate) use columns::{CompressedColumn, compressed_floats, compressed_turns};
-pub use exr::{half_of, write_exr};
+pub use exr::{half_bits, write_exr};
 pub use glb_levels::write_glb_levels;
 pub use glb_nodes::{NamedNodes, write_glb_nodes};
 pub use glb_pack::{Packing, write_glb_joined, write_glb_packed};

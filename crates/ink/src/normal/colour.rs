@@ -55,6 +55,12 @@ pub fn hue(c: [u8; 3]) -> (f64, u8) {
     ((60.0 * sixth).rem_euclid(360.0), span)
 }
 
+/// Returns the angle between two hues, degrees: 0 to 180.
+pub fn hues_apart(a: f64, b: f64) -> f64 {
+    let apart = (a - b).abs();
+    apart.min(360.0 - apart)
+}
+
 /// A closed outline of a figure.
 struct Outline {
     figure: usize,
@@ -230,8 +236,7 @@ fn is_gloss(own: [u8; 3], below: [u8; 3]) -> bool {
 fn is_tint(own: [u8; 3], below: [u8; 3]) -> bool {
     let is_pale = |c: [u8; 3]| hue(c).1 < HUED && c.iter().all(|c| *c >= PALE);
     let [(a, own_span), (b, below_span)] = [own, below].map(hue);
-    let apart = (a - b).abs();
-    own_span.min(below_span) >= HUED && apart.min(360.0 - apart) < SAME_HUE || is_pale(own) && is_pale(below)
+    own_span.min(below_span) >= HUED && hues_apart(a, b) < SAME_HUE || is_pale(own) && is_pale(below)
 }
 
 /// Returns what is left out by one or the other.

@@ -26,7 +26,7 @@ mod pieces;
 mod ribbon;
 mod traced;
 
-pub use colour::hue;
+pub use colour::{hue, hues_apart};
 
 use base::LiteMap;
 use glam::DVec2;

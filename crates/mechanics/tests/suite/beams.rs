@@ -223,7 +223,7 @@ fn springs_hold_a_leaning_rod_where_it_was() {
 }
 
 #[test]
-fn the_time_step_is_half_of_what_is_stable() {
+fn the_time_step_is_half_bits_what_is_stable() {
     let made = made(&rod(10, 0.0), &MechanicsSpec::default());
     let fastest = made.frequencies().expect("joints").highest_hz * TAU;
     assert!(made.time_step_s * fastest <= 1.0 + 1e-9, "{} s", made.time_step_s);

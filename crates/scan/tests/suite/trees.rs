@@ -185,7 +185,7 @@ fn a_tree_in_leaf_keeps_its_wood_and_its_leaves_are_left_out() {
 }
 
 #[test]
-fn half_of_the_points_change_little() {
+fn half_bits_the_points_change_little() {
     let truth = tree();
     let points = cloud(&[wood_mesh(&truth), ground()]);
     let volume = |step: usize| {

@@ -4,6 +4,7 @@ use geom::resample;
 use glam::DVec2;
 use ink::{Ink, InkStroke};
 
+use super::super::LIMITS;
 use super::super::readers::Part;
 use super::super::shape::Shape;
 use super::PAINTED;
@@ -11,8 +12,6 @@ use super::masses::{Areas, closed};
 use crate::rows::OrganWord;
 use crate::{Kind, Reading, palette};
 
-/// All hues, degrees.
-const FULL_CIRCLE: f64 = 360.0;
 /// Number of places round an area at which the width of its rim is measured.
 const ROUND: f64 = 96.0;
 
@@ -76,7 +75,7 @@ impl Area {
     pub(super) fn is_stem(&self) -> bool {
         let width = 4.0 * self.shape.area / self.shape.perimeter;
         let is_blade = self.shape.corners.len() == 2 || self.shape.convexity < PAINTED.stem_convex;
-        let most = if is_blade { 0.6 * PAINTED.stem } else { PAINTED.stem };
+        let most = if is_blade { PAINTED.blade * PAINTED.stem } else { PAINTED.stem };
         width < most * self.shape.length()
     }
 
@@ -116,7 +115,7 @@ fn even(side: &[DVec2]) -> Vec<DVec2> {
 
 fn is_closed(stroke: &InkStroke) -> bool {
     let ends = [stroke.points[0], stroke.points[stroke.points.len() - 1]];
-    ends[0].distance(ends[1]) < PAINTED.closed * stroke.length
+    ends[0].distance(ends[1]) < LIMITS.closed * stroke.length
 }
 
 /// The areas and lines of a picture, without those of its pot.
@@ -155,9 +154,7 @@ impl<'a> Painted<'a> {
             }
         }
         areas.retain(|a| !is_rim(a, ink, &lines));
-        let behind: Vec<bool> = areas.iter().map(|a| is_behind(a, &areas)).collect();
-        let mut behind = behind.into_iter();
-        areas.retain(|_| !behind.next().unwrap_or_default());
+        let areas: Vec<Area> = areas.iter().filter(|a| !is_behind(a, &areas)).cloned().collect();
         let colors = ink.strokes.iter().map(|s| s.color).collect();
         Self { areas, lines, whole, colors }
     }
@@ -167,8 +164,7 @@ impl<'a> Painted<'a> {
         let [Some(a), Some(b)] = [a, b].map(|area| self.colors[area.strokes[0]].map(ink::hue)) else {
             return true;
         };
-        let apart = (a.0 - b.0).abs();
-        apart.min(FULL_CIRCLE - apart) < PAINTED.hue
+        ink::hues_apart(a.0, b.0) < PAINTED.hue
     }
 
     /// Whether a line lies in an area.
@@ -247,44 +243,67 @@ fn is_shade(area: &Area, outer: &Area) -> bool {
     area.tone == Tone::Green && area.lies_in(outer)
 }
 
-/// Returns the share of a painted picture's area that became organs which never have its colour: 0 to 1; 0 for
-/// drawings that are not painted. Cost: linear in strokes.
-pub(crate) fn contradicted(ink: &Ink, reading: &Reading, kind: Kind) -> f64 {
-    if !palette::is_coloured(ink) {
-        return 0.0;
+/// What the colours of a painted picture say against readings of it.
+pub(crate) struct Colours {
+    /// All areas, each with the index of its stroke.
+    areas: Vec<(u32, Area)>,
+    is_herb: bool,
+    is_mostly_bright: bool,
+    is_below: bool,
+    has_bright: bool,
+    has_green: bool,
+}
+
+impl Colours {
+    /// Finds the areas of a picture; `None` for drawings without the colours of plants. Cost: as [`propose`](super::propose).
+    pub(crate) fn new(ink: &Ink) -> Option<Self> {
+        if !palette::is_coloured(ink) {
+            return None;
+        }
+        let painted = Painted::new(ink, None);
+        let area = |(row, stroke): (usize, &InkStroke)| Some((stroke.index, Area::new((row, stroke))?));
+        Some(Self {
+            areas: ink.strokes.iter().enumerate().filter_map(area).collect(),
+            is_herb: painted.is_without_wood(),
+            is_mostly_bright: painted.share_of(Tone::Bright) > PAINTED.bright,
+            is_below: palette::brights(ink) == palette::Brights::Below,
+            has_bright: painted.areas.iter().any(|a| a.tone == Tone::Bright),
+            has_green: ink.strokes.iter().any(palette::is_green_stroke),
+        })
     }
-    let painted = Painted::new(ink, None);
-    let is_herb = painted.is_without_wood();
-    let is_mostly_bright = painted.share_of(Tone::Bright) > PAINTED.bright;
-    let is_below = palette::brights(ink) == palette::Brights::Below;
-    let has_bright = painted.areas.iter().any(|a| a.tone == Tone::Bright);
-    let has_green = ink.strokes.iter().any(palette::is_green_stroke);
-    let (mut whole, mut wrong) = (0.0, 0.0);
-    for (row, stroke) in ink.strokes.iter().enumerate() {
-        let Some(area) = Area::new((row, stroke)) else { continue };
-        let Some(said) = reading.strokes.iter().find(|s| s.index == stroke.index) else { continue };
-        let contradicts = match (area.tone, said.organ) {
+
+    /// Returns the share of the painted area that became organs which never have its colour: 0 to 1.
+    pub(crate) fn contradicted(&self, reading: &Reading, kind: Kind) -> f64 {
+        let (mut whole, mut wrong) = (0.0, 0.0);
+        for (index, area) in &self.areas {
+            let Some(said) = reading.strokes.iter().find(|s| s.index == *index) else { continue };
+            whole += area.shape.area;
+            if self.contradict(area, said.organ, kind) {
+                wrong += area.shape.area;
+            }
+        }
+        if whole > 0.0 { wrong / whole } else { 0.0 }
+    }
+
+    /// Whether an area never is such an organ of a plant of a kind.
+    fn contradict(&self, area: &Area, organ: OrganWord, kind: Kind) -> bool {
+        match (area.tone, organ) {
             // A drawing in greens alone may be one of a green pen.
-            (Tone::Green, OrganWord::Petal | OrganWord::Disc) => has_bright,
+            (Tone::Green, OrganWord::Petal | OrganWord::Disc) => self.has_bright,
             (Tone::Green, OrganWord::Pot) => true,
-            (Tone::Green, OrganWord::Fruit) => is_mostly_bright || super::super::is_lens(&stroke.points),
-            (Tone::Green, OrganWord::TwigContour | OrganWord::LeafContour) => is_herb,
+            (Tone::Green, OrganWord::Fruit) => self.is_mostly_bright || super::super::is_lens(&area.outline),
+            (Tone::Green, OrganWord::TwigContour | OrganWord::LeafContour) => self.is_herb,
             (Tone::Green, OrganWord::Trunk) => kind != Kind::Cactus,
-            (Tone::Bright, OrganWord::Leaf) => has_green,
+            (Tone::Bright, OrganWord::Leaf) => self.has_green,
             (Tone::Bright, OrganWord::TwigContour | OrganWord::LeafContour) => true,
             (Tone::Bright, OrganWord::Trunk | OrganWord::Branch) => {
                 !kind.is_like(Kind::Tree) && kind != Kind::Palm
             }
-            (Tone::Bright, OrganWord::Petal) => is_below,
+            (Tone::Bright, OrganWord::Petal) => self.is_below,
             (Tone::Bright, OrganWord::Pot) => area.is_round(),
             _ => false,
-        };
-        whole += area.shape.area;
-        if contradicts {
-            wrong += area.shape.area;
         }
     }
-    if whole > 0.0 { wrong / whole } else { 0.0 }
 }
 
 impl Area {

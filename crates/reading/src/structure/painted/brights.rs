@@ -19,7 +19,7 @@ impl Plant {
         let rays = if place == Brights::Below { None } else { self.add_rays(&all) };
         let is_taken = |a: &Area| rays.iter().flatten().any(|f| core::ptr::eq(*f, a) || a.lies_in(f));
         let left: Vec<&Area> = all.into_iter().filter(|a| !is_taken(a)).collect();
-        for mut members in groups(left) {
+        for mut members in groups(left, touch) {
             while let Some(flower) = self.add_from_front(&members) {
                 members.retain(|a| !flower.iter().any(|f| core::ptr::eq(*f, *a) || a.lies_in(f)));
             }
@@ -28,7 +28,8 @@ impl Plant {
                 self.add_fruits(&members);
                 continue;
             }
-            for petals in of_one_hue(painted, members) {
+            let is_of_flower = |a: &Area, b: &Area| painted.are_of_one_hue(a, b) && touch(a, b);
+            for petals in groups(members, is_of_flower) {
                 self.add_profile(&petals);
             }
         }
@@ -113,18 +114,13 @@ impl Plant {
 
     /// Whether bright areas are fruits: round, and they hang on a stem or lie below the leaves.
     fn are_fruits(&self, members: &[&Area], place: Brights) -> bool {
-        let outer: Vec<&&Area> = members.iter().filter(|a| !members.iter().any(|o| a.lies_in(o))).collect();
         if place == Brights::Below {
             return true;
         }
-        let hangs = |a: &Area| {
-            let stems = self.parts.iter().filter(|p| p.class == StrokeClass::Axis);
-            let ends = stems.flat_map(|s| [s.points[0], s.points[s.points.len() - 1]]);
-            let nearest = ends.map(|p| nearest_on_ring(&a.outline, p)).min_by(|a, b| a.1.total_cmp(&b.1));
-            match nearest.filter(|(_, off)| *off < PAINTED.touch) {
-                Some((at, _)) => at.y > a.shape.middle.y,
-                None => place != Brights::Above && a.shape.slenderness > PAINTED.berry,
-            }
+        let outer = outermost(members);
+        let hangs = |a: &Area| match self.end_of_stem_on(&a.outline) {
+            Some(end) => end.y > a.shape.middle.y,
+            None => place != Brights::Above && a.shape.slenderness > PAINTED.berry,
         };
         let are_berries = outer.iter().all(|a| a.shape.slenderness > PAINTED.berry);
         (are_berries || outer.len() == 1)
@@ -133,11 +129,8 @@ impl Plant {
     }
 
     fn add_fruits(&mut self, members: &[&Area]) {
-        for area in members {
-            // Gloss and seeds lie in a fruit.
-            if !members.iter().any(|o| area.lies_in(o)) {
-                self.add(closed(&area.outline), StrokeClass::Fruit, None, area.strokes.clone());
-            }
+        for area in outermost(members) {
+            self.add(closed(&area.outline), StrokeClass::Fruit, None, area.strokes.clone());
         }
     }
 
@@ -146,17 +139,10 @@ impl Plant {
         let points: Vec<DVec2> = members.iter().flat_map(|a| a.outline.iter().copied()).collect();
         let hull = convex_hull(&points);
         let Some((low, high)) = bounds(&hull) else { return };
-        let stems = self.parts.iter().filter(|p| p.class == StrokeClass::Axis);
-        let ends = stems.flat_map(|s| [s.points[0], s.points[s.points.len() - 1]]);
-        let at_stem = ends.map(|p| nearest_on_ring(&hull, p)).min_by(|a, b| a.1.total_cmp(&b.1));
         let lowest = || nearest_on_ring(&hull, DVec2::new(low.x.midpoint(high.x), low.y)).0;
-        let base = at_stem.filter(|(_, off)| *off < PAINTED.touch).map_or_else(lowest, |(p, _)| p);
+        let base = self.end_of_stem_on(&hull).unwrap_or_else(lowest);
         let first = self.parts.len();
-        for petal in members {
-            // Tones and folds lie in a petal.
-            if members.iter().any(|o| petal.lies_in(o)) {
-                continue;
-            }
+        for petal in outermost(members) {
             let touches = nearest_on_ring(&petal.outline, base).1 < PAINTED.touch;
             let outline = if touches {
                 closed(&petal.outline)
@@ -179,15 +165,11 @@ fn petals_round<'a>(members: &[&'a Area], disc: Option<&Area>, centre: DVec2) ->
             && !geom::contains(&a.outline, centre)
             && nearest_on_ring(&a.outline, centre).1 < hub + PAINTED.petal_off * reach(a)
     };
-    let mut petals: Vec<&Area> = members.iter().filter(may_be_petal).copied().collect();
-    // Several petals that lie in an area have it as their rim; tones of a petal lie in it.
-    let held = |o: &Area| petals.iter().filter(|a| a.lies_in(o)).count();
-    let rims: Vec<bool> = petals.iter().map(|o| held(o) > PAINTED.petals).collect();
-    let mut rims = rims.into_iter();
-    petals.retain(|_| !rims.next().unwrap_or_default());
-    let tones: Vec<bool> = petals.iter().map(|a| petals.iter().any(|o| a.lies_in(o))).collect();
-    let mut tones = tones.into_iter();
-    petals.retain(|_| !tones.next().unwrap_or_default());
+    let found: Vec<&Area> = members.iter().filter(may_be_petal).copied().collect();
+    // Several petals that lie in an area have it as their rim.
+    let is_rim = |o: &Area| found.iter().filter(|a| a.lies_in(o)).count() > PAINTED.petals;
+    let without_rims: Vec<&Area> = found.iter().filter(|a| !is_rim(a)).copied().collect();
+    let mut petals = outermost(&without_rims);
     let most = petals.iter().map(|a| a.shape.area).fold(0.0, f64::max);
     // Smaller ones are gloss.
     petals.retain(|a| a.shape.area > PAINTED.alike * most);
@@ -205,24 +187,7 @@ fn is_disc_of(disc: &Area, petals: &[&Area]) -> bool {
     let whole: f64 = petals.iter().map(|a| a.shape.area).sum();
     let are_berries = petals.iter().all(|a| a.shape.slenderness > PAINTED.berry);
     let mean = whole / petals.len() as f64;
-    disc.shape.area < PAINTED.disc * whole && !(are_berries && disc.shape.area > 0.5 * mean)
-}
-
-/// Parts areas into groups of one hue.
-fn of_one_hue<'a>(painted: &Painted<'_>, mut left: Vec<&'a Area>) -> Vec<Vec<&'a Area>> {
-    let mut groups = Vec::new();
-    while let Some(first) = left.pop() {
-        let mut group = vec![first];
-        let mut next = 0;
-        while let Some(&own) = group.get(next) {
-            next += 1;
-            let near: Vec<&Area> =
-                left.extract_if(.., |a| painted.are_of_one_hue(own, a) && touch(own, a)).collect();
-            group.extend(near);
-        }
-        groups.push(group);
-    }
-    groups
+    disc.shape.area < PAINTED.disc * whole && !(are_berries && disc.shape.area > PAINTED.berry_alike * mean)
 }
 
 /// Whether an area may belong to a flower: a bright one, or a dark one, which may be a disc.
@@ -230,20 +195,25 @@ fn may_be_of_flower(area: &Area) -> bool {
     area.tone == Tone::Bright || area.tone == Tone::Wood && !area.is_stem()
 }
 
-/// Returns the groups of areas that touch one another.
-fn groups(mut left: Vec<&Area>) -> Vec<Vec<&Area>> {
+/// Parts areas into groups: each member but the first goes with another one. `go_together`: whether two areas do.
+fn groups(mut left: Vec<&Area>, go_together: impl Fn(&Area, &Area) -> bool) -> Vec<Vec<&Area>> {
     let mut groups = Vec::new();
     while let Some(first) = left.pop() {
         let mut group = vec![first];
         let mut next = 0;
         while let Some(&own) = group.get(next) {
             next += 1;
-            let near: Vec<&Area> = left.extract_if(.., |a| touch(own, a)).collect();
+            let near: Vec<&Area> = left.extract_if(.., |a| go_together(own, a)).collect();
             group.extend(near);
         }
         groups.push(group);
     }
     groups
+}
+
+/// Returns the areas that lie in no other one of them: tones, gloss and seeds lie in an organ.
+fn outermost<'a>(members: &[&'a Area]) -> Vec<&'a Area> {
+    members.iter().filter(|a| !members.iter().any(|o| a.lies_in(o))).copied().collect()
 }
 
 /// Whether two areas touch or overlap.

@@ -11,20 +11,16 @@ use geom::{distance_to_polyline, polyline_length};
 use glam::DVec2;
 use ink::{Ink, StrokeClass, StrokeMode};
 
-use super::masses;
+use super::masses::{self, Areas};
 use super::readers::{Part, Proposal, Scene};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 use crate::palette;
-pub(crate) use areas::contradicted;
-use areas::{Painted, Tone};
+pub(crate) use areas::Colours;
+use areas::{Area, Painted, Tone};
 
 /// Limits of areas and of the organs that they are. Lengths are in ink units (the drawing's diagonal is 1).
 struct PaintedLimits {
-    /// Most strokes of a picture that is read.
-    most_strokes: usize,
-    /// The ends of an outline are nearer than this share of its length.
-    closed: f64,
     /// Areas below this share of all are gloss, or dirt.
     speck: f64,
     /// An area lies in another one with more than this share of its outline,
@@ -35,8 +31,10 @@ struct PaintedLimits {
     touch: f64,
     /// An area is a stem if its mean width is less than this share of its length.
     stem: f64,
-    /// A blade has two corners, or is less convex than this: it must be more slender by far to be a stem.
+    /// A blade has two corners, or is less convex than this:
     stem_convex: f64,
+    /// it is a stem only if it is more slender by this factor.
+    blade: f64,
     /// A bright area in a green one is a vein if it is more slender than this (width over length).
     vein: f64,
     /// Number of places across which the middle of a stem is found.
@@ -67,9 +65,9 @@ struct PaintedLimits {
     fruit_round: f64,
     /// The disc of a flower is more convex than this,
     disc_convex: f64,
-    /// it has at most this share of the area of its largest petal or of the corolla round it,
+    /// it has at most this share of the area of all its petals, or of the corolla round it,
     disc: f64,
-    /// it lies nearer to the middle of the head than this share of the head's radius,
+    /// in a corolla it lies nearer to the middle than this share of half its length,
     disc_off: f64,
     /// at least this many petals stand round it (one more of them if it is seen from the side),
     petals: usize,
@@ -81,12 +79,14 @@ struct PaintedLimits {
     side_gap: f64,
     /// none has less than this share of the area of the largest,
     alike: f64,
-    /// and none is farther from the disc than this share of the radius of the head.
+    /// and none begins farther from the disc than this share of the distance from the middle to its tip.
     petal_off: f64,
     /// A corolla with a disc and without lobes is less convex than this.
     corolla: f64,
-    /// Fruits of a bunch are rounder than this (width over length).
+    /// Fruits of a bunch are rounder than this (width over length),
     berry: f64,
+    /// and none is a disc among them if it has more than this share of their mean area.
+    berry_alike: f64,
     /// Areas of one flower differ by at most this hue, degrees.
     hue: f64,
     /// A line shorter than this is a mark.
@@ -94,14 +94,13 @@ struct PaintedLimits {
 }
 
 const PAINTED: PaintedLimits = PaintedLimits {
-    most_strokes: 200,
-    closed: 0.08,
     speck: 0.004,
     inside: 0.8,
     smaller: 0.75,
     touch: 0.03,
     stem: 0.28,
     stem_convex: 0.85,
+    blade: 0.6,
     vein: 0.45,
     stem_steps: 12,
     joined: 0.72,
@@ -127,18 +126,16 @@ const PAINTED: PaintedLimits = PaintedLimits {
     petal_off: 0.25,
     corolla: 0.97,
     berry: 0.85,
+    berry_alike: 0.5,
     hue: 35.0,
     mark: 0.05,
 };
 
-/// Proposes a plant by the colours of a painted picture; `None` if it is none, or shows wood. Cost: quadratic in areas,
-/// of which there are few.
+/// Proposes a plant by the colours of a painted picture; `None` if it is none, or shows wood. Cost: quadratic in strokes,
+/// times their points: for drawings of few strokes.
 pub(crate) fn propose(ink: &Ink) -> Option<Proposal> {
     let is_part = |s: &ink::InkStroke| s.mode == StrokeMode::Parts;
-    if ink.strokes.len() > PAINTED.most_strokes
-        || !ink.strokes.iter().all(is_part)
-        || !palette::is_coloured(ink)
-    {
+    if !ink.strokes.iter().all(is_part) || !palette::is_coloured(ink) {
         return None;
     }
     let pot = Scene::new(ink).and_then(|scene| scene.pot);
@@ -147,9 +144,10 @@ pub(crate) fn propose(ink: &Ink) -> Option<Proposal> {
         return None;
     }
     let mut plant = Plant::default();
-    plant.add_stems(&painted);
+    let joined: Vec<Option<Areas>> = painted.areas.iter().map(Area::parts).collect();
+    plant.add_stems(&painted, &joined);
     plant.add_brights(&painted, palette::brights(ink));
-    plant.add_leaves(&painted);
+    plant.add_leaves(&painted, &joined);
     plant.parts.extend(pot);
     plant.proposal()
 }
@@ -162,8 +160,9 @@ struct Plant {
 }
 
 impl Plant {
-    /// Adds lines, slender areas, and the stems of areas that are a stem with leaves.
-    fn add_stems(&mut self, painted: &Painted<'_>) {
+    /// Adds lines, slender areas, and the stems of areas that are a stem with leaves. `joined`: the parts of each area
+    /// that is one.
+    fn add_stems(&mut self, painted: &Painted<'_>, joined: &[Option<Areas>]) {
         for line in painted.lines.iter().filter(|l| l.tone != Tone::Bright) {
             if polyline_length(line.points) > PAINTED.mark && !painted.is_mark(line) {
                 self.add(line.points.to_vec(), StrokeClass::Axis, None, vec![line.row]);
@@ -172,8 +171,8 @@ impl Plant {
         for area in painted.areas.iter().filter(|a| a.tone != Tone::Bright && a.is_stem()) {
             self.add(area.middle_line(), StrokeClass::Axis, None, area.strokes.clone());
         }
-        for area in painted.areas.iter().filter(|a| a.is_joined()) {
-            for stem in area.parts().iter().flat_map(|p| &p.stems) {
+        for (area, parts) in painted.areas.iter().zip(joined) {
+            for stem in parts.iter().flat_map(|p| &p.stems) {
                 self.add(stem.points.clone(), StrokeClass::Axis, None, area.strokes.clone());
             }
         }
@@ -182,10 +181,11 @@ impl Plant {
     /// Adds green areas as leaves, each attached where it is nearest to a stem or another organ.
     ///
     /// They come first, as a part lies in front of those before it, and nothing hides a flower.
-    fn add_leaves(&mut self, painted: &Painted<'_>) {
+    fn add_leaves(&mut self, painted: &Painted<'_>, joined: &[Option<Areas>]) {
         let bearers = self.parts.len();
-        for area in painted.areas.iter().filter(|a| a.tone == Tone::Green && !a.is_stem()) {
-            let Some(parts) = area.parts().filter(|p| !p.masses.is_empty()) else {
+        let green = |(area, _): &(&Area, &Option<Areas>)| area.tone == Tone::Green && !area.is_stem();
+        for (area, parts) in painted.areas.iter().zip(joined).filter(green) {
+            let Some(parts) = parts.as_ref().filter(|p| !p.masses.is_empty()) else {
                 let root = self.nearest(bearers, area.shape.ends, Some(&area.outline));
                 self.add(masses::closed(&area.outline), StrokeClass::Blade, Some(root), area.strokes.clone());
                 continue;
@@ -202,11 +202,7 @@ impl Plant {
 
     /// Returns the end of a leaf that is nearer to the first parts, or the place of its outline at the end of a stem.
     fn nearest(&self, bearers: usize, ends: [DVec2; 2], outline: Option<&[DVec2]>) -> DVec2 {
-        let stems = || self.parts[..bearers].iter().filter(|p| p.class == StrokeClass::Axis);
-        let stem_ends = stems().flat_map(|s| [s.points[0], s.points[s.points.len() - 1]]);
-        let on_outline = |p: DVec2| outline.map(|o| nearest_on_ring(o, p));
-        let at_end = stem_ends.filter_map(on_outline).min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((place, _)) = at_end.filter(|(_, off)| *off < PAINTED.touch) {
+        if let Some(place) = outline.and_then(|o| self.end_of_stem_on(o)) {
             return place;
         }
         let off = |p: DVec2| {
@@ -216,6 +212,14 @@ impl Plant {
         let [a, b] = ends;
         let (to_a, to_b) = (off(a), off(b));
         if to_a < to_b || to_a.total_cmp(&to_b).is_eq() && a.y < b.y { a } else { b }
+    }
+
+    /// Returns the place of an outline that is nearest to an end of a stem, if one touches it.
+    fn end_of_stem_on(&self, outline: &[DVec2]) -> Option<DVec2> {
+        let stems = self.parts.iter().filter(|p| p.class == StrokeClass::Axis);
+        let ends = stems.flat_map(|s| [s.points[0], s.points[s.points.len() - 1]]);
+        let nearest = ends.map(|p| nearest_on_ring(outline, p)).min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, off)| *off < PAINTED.touch).map(|(place, _)| place)
     }
 
     fn add(&mut self, points: Vec<DVec2>, class: StrokeClass, root: Option<DVec2>, strokes: Vec<usize>) {

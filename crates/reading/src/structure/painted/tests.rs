@@ -162,10 +162,11 @@ fn colours_contradict_green_petals_and_red_crowns() {
     };
     let (stem, fruit) = (OrganWord::Branch, OrganWord::Fruit);
     let right = read([stem, stem, OrganWord::Leaf, fruit, fruit]);
-    assert!(contradicted(&ink, &right, Kind::Fruit) == 0.0);
+    let colours = Colours::new(&ink).expect("colours of a plant");
+    assert!(colours.contradicted(&right, Kind::Fruit) == 0.0);
     let crown = OrganWord::LeafContour;
     let wrong = read([stem, stem, OrganWord::Petal, crown, crown]);
-    assert!(contradicted(&ink, &wrong, Kind::Tree) > 0.9);
+    assert!(colours.contradicted(&wrong, Kind::Tree) > 0.9);
 }
 
 #[test]
